@@ -1,0 +1,1 @@
+"""Files from and for the outside: video, images, masks, meshes, sequences, cameras, tracks."""

@@ -1,0 +1,1 @@
+"""Derived results: one graph of stages; cache, staleness, jobs."""

@@ -1,0 +1,1 @@
+"""The project folder: open, save, autosave, recover, migrate."""

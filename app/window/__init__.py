@@ -1,0 +1,1 @@
+"""The window: shell, theme, canvas, viewport, timeline and the workspaces."""

@@ -1,0 +1,1 @@
+"""Detail-preserving deformation (paper A, 3.4)."""

@@ -1,0 +1,1 @@
+"""User control, two passes (paper A, 3.6), and the comparisons of the paper."""

@@ -1,0 +1,1 @@
+"""Composites: character, shadow, occlusion, plate."""

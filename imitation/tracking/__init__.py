@@ -1,0 +1,1 @@
+"""Interactive point tracking (paper A, appendix) and subject masks."""

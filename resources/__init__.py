@@ -1,0 +1,1 @@
+"""The built-in sample world and the program that makes it, icons, theme."""

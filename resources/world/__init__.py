@@ -1,0 +1,1 @@
+"""The program that makes the sample world: bodies, gaits, scene, camera, picture, truth."""
