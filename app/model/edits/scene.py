@@ -1,0 +1,145 @@
+"""Edits of the clip, masks, cameras, ground, scale and names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import attrs
+
+from app.model.document import Document
+from app.model.edits.edit import Edit, checked_frame, checked_interval, checked_name, checked_place
+from app.model.frozen import FrozenMap
+from app.model.values import Clip, KeyMask, Lasso, MediaRef, ModelError, Point2
+from app.model.world import CameraChoice, CameraSource, GroundKind, KnownLength
+
+
+def set_clip(document: Document, clip: Clip) -> Edit:
+    """Set the filmed video; marks beyond the end of a shorter one are refused, not dropped."""
+    if clip.frame_count < 1:
+        raise ModelError("The clip has no frames: choose another file.")
+    latest = max(
+        [frame for track in document.tracks for frame in track.clicks]
+        + [contact.span.last for track in document.tracks for contact in track.contacts]
+        + list(document.masks),
+        default=-1,
+    )
+    if latest >= clip.frame_count:
+        raise ModelError(
+            f"The new clip has {clip.frame_count} frames, but the project has marks up to frame {latest}: "
+            "use the clip in a new project."
+        )
+    return Edit(attrs.evolve(document, clip=clip), "Set the clip")
+
+
+def relink_clip(document: Document, media: MediaRef) -> Edit:
+    """Say where the clip lies now."""
+    if document.clip is None:
+        raise ModelError("This project has no clip yet: add a video first.")
+    return Edit(attrs.evolve(document, clip=attrs.evolve(document.clip, media=media)), "Find the clip again")
+
+
+def rename(document: Document, name: str) -> Edit:
+    """Give the project another name."""
+    name = checked_name(name)
+    return Edit(attrs.evolve(document, name=name), f"Rename the project to {name}")
+
+
+def set_range(document: Document, first: int | None, last: int | None) -> Edit:
+    """Set the in and out frame, or take them away (None)."""
+    if first is None or last is None:
+        return Edit(attrs.evolve(document, range=None), "Use the whole clip")
+    interval = checked_interval(document, first, last)
+    return Edit(attrs.evolve(document, range=interval), f"Set the range to {interval.first}-{interval.last}")
+
+
+def add_lasso(document: Document, frame: int, points: Iterable[Point2], *, subtract: bool = False) -> Edit:
+    """Add a lasso to the mask of a frame, or take it away from the mask."""
+    frame = checked_frame(document, frame)
+    outline = tuple((float(x), float(y)) for x, y in points)
+    if not all(math.isfinite(x) and math.isfinite(y) for x, y in outline):
+        raise ModelError(f"The lasso in frame {frame} has points that are not finite: draw it again.")
+    key = document.masks.get(frame, KeyMask())
+    grown = attrs.evolve(key, lassos=(*key.lassos, Lasso(outline, subtract)))
+    label = "Cut the mask" if subtract else "Draw the mask"
+    return Edit(attrs.evolve(document, masks=document.masks.with_item(frame, grown)), f"{label}, frame {frame}", frame)
+
+
+def move_lasso_point(document: Document, frame: int, lasso: int, index: int, point: Point2) -> Edit:
+    """Move one point of a lasso."""
+    key = document.masks.get(frame)
+    if key is None or not 0 <= lasso < len(key.lassos) or not 0 <= index < len(key.lassos[lasso].points):
+        raise ModelError(f"The mask of frame {frame} has no such point.")
+    outline = list(key.lassos[lasso].points)
+    outline[index] = (float(point[0]), float(point[1]))
+    lassos = list(key.lassos)
+    lassos[lasso] = attrs.evolve(lassos[lasso], points=tuple(outline))
+    masks = document.masks.with_item(frame, attrs.evolve(key, lassos=tuple(lassos)))
+    return Edit(attrs.evolve(document, masks=masks), f"Move mask point, frame {frame}", frame)
+
+
+def remove_mask(document: Document, frame: int) -> Edit:
+    """Remove the key mask of a frame."""
+    if frame not in document.masks:
+        raise ModelError(f"There is no mask drawn in frame {frame}.")
+    return Edit(attrs.evolve(document, masks=document.masks.without(frame)), f"Remove the mask, frame {frame}", frame)
+
+
+def set_camera(
+    document: Document, source: CameraSource, *, focal: float | None = None, file: MediaRef | None = None
+) -> Edit:
+    """Choose where the cameras come from."""
+    if source not in ("solve", "static", "file"):
+        raise ModelError(f"Cameras are solved, static or read from a file, not {source!r}.")
+    if source == "file" and file is None:
+        raise ModelError("Cameras from a file need the file: choose a COLMAP model or a transforms.json.")
+    if focal is not None and not (math.isfinite(focal) and focal > 0):
+        raise ModelError(f"The focal length must be a positive number of pixels, not {focal}.")
+    choice = CameraChoice(source, focal, file, document.camera.unknown)
+    words = {"solve": "Solve the cameras from the video", "static": "Use a static camera", "file": "Read the cameras"}
+    return Edit(attrs.evolve(document, camera=choice), words[source])
+
+
+def set_ground(
+    document: Document,
+    kind: GroundKind,
+    *,
+    plane_points: Iterable[Iterable[float]] = (),
+    depth_track: str | None = None,
+    depth: float | None = None,
+) -> Edit:
+    """Choose where contacts lie: local fit, plane through selected points, or a track of constant depth."""
+    if kind not in ("local", "plane", "depth"):
+        raise ModelError(f"The ground is local, plane or depth, not {kind!r}.")
+    points = tuple(checked_place(point) for point in plane_points)
+    if points and len(points) < 3:
+        raise ModelError(f"A plane needs at least 3 selected points, but got {len(points)}: select more.")
+    if depth is not None and not (math.isfinite(depth) and depth > 0):
+        raise ModelError(f"A depth must be a positive number, not {depth}.")
+    if kind == "depth" and depth_track is not None:
+        document.track(depth_track)
+    world = attrs.evolve(document.world, ground=kind, plane_points=points, depth_track=depth_track, depth=depth)
+    words = {
+        "local": "Fit the ground near each contact",
+        "plane": "Use one ground plane",
+        "depth": "Keep one point at constant depth",
+    }
+    return Edit(attrs.evolve(document, world=world), words[kind])
+
+
+def set_length(document: Document, length: KnownLength | None) -> Edit:
+    """Say how long the distance between two places is, or forget it."""
+    if length is not None:
+        checked_place(length.first)
+        checked_place(length.second)
+        if not (math.isfinite(length.metres) and length.metres > 0):
+            raise ModelError(f"A known length must be a positive number of metres, not {length.metres}.")
+        if math.dist(length.first, length.second) == 0:
+            raise ModelError("The two ends of a known length are the same place: choose two different points.")
+    label = "Forget the known length" if length is None else f"Set a length of {length.metres:g} m"
+    return Edit(attrs.evolve(document, world=attrs.evolve(document.world, length=length)), label)
+
+
+def clear_masks(document: Document) -> Edit:
+    """Remove all masks."""
+    return Edit(attrs.evolve(document, masks=FrozenMap()), "Remove all masks")
