@@ -1,0 +1,147 @@
+"""The project folder: project.json, media/, results/, autosave.json."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import attrs
+
+from app.model.document import Document
+from app.model.values import MediaRef
+from app.storage.atomic import explain, write_atomically
+from app.storage.fingerprint import fingerprint
+from app.storage.schema import document_from_json, document_to_json
+from imitation.errors import InputError
+
+SUFFIX = ".motionwright"
+
+
+@attrs.frozen
+class ProjectFolder:
+    """A folder ``name.motionwright`` that holds one project."""
+
+    path: Path = attrs.field(converter=Path)
+
+    @property
+    def file(self) -> Path:
+        """The saved document."""
+        return self.path / "project.json"
+
+    @property
+    def autosave_file(self) -> Path:
+        """The document as it was at the last autosave, there only while it is newer than the saved one."""
+        return self.path / "autosave.json"
+
+    @property
+    def media(self) -> Path:
+        """Copied media."""
+        return self.path / "media"
+
+    @property
+    def results(self) -> Path:
+        """Computed results by key; may be deleted at any time."""
+        return self.path / "results"
+
+    @classmethod
+    def create(cls, path: Path, document: Document) -> ProjectFolder:
+        """Make a new project folder; one that exists with a project inside is refused."""
+        folder = cls(path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX))
+        if folder.file.exists():
+            raise InputError(f"{folder.path} is a project already: open it, or choose another name.")
+        try:
+            folder.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(explain(error, folder.path)) from error
+        folder.save(document)
+        return folder
+
+    @classmethod
+    def find(cls, path: Path) -> ProjectFolder:
+        """Give the project folder at a path, which may also name its project.json or leave out the suffix."""
+        for candidate in (
+            path,
+            path.parent if path.name == "project.json" else path,
+            path.with_name(path.name + SUFFIX),
+        ):
+            folder = cls(candidate)
+            if folder.file.is_file() or folder.autosave_file.is_file():
+                return folder
+        raise InputError(f"{path} is no Motionwright project: it has no project.json.")
+
+    def load(self) -> Document:
+        """Read the saved document."""
+        return self._read(self.file)
+
+    def save(self, document: Document) -> None:
+        """Write the document and drop the autosave, which it supersedes."""
+        write_atomically(self.file, document_to_json(document))
+        self.autosave_file.unlink(missing_ok=True)
+
+    def autosave(self, document: Document) -> None:
+        """Write the document beside the saved one."""
+        write_atomically(self.autosave_file, document_to_json(document))
+
+    def recoverable(self) -> Document | None:
+        """Give the autosaved document of a session that ended without saving, None where there is none to offer."""
+        if not self.autosave_file.is_file():
+            return None
+        try:
+            recovered = self._read(self.autosave_file)
+        except InputError:
+            return None
+        if self.file.is_file() and document_to_json(recovered) == self.file.read_bytes():
+            return None
+        return recovered
+
+    def copy_in(self, source: Path) -> MediaRef:
+        """Copy a file or a folder of files into media/ and give its reference."""
+        if not source.exists():
+            raise InputError(f"{source} does not exist: check the path.")
+        mark = fingerprint(source)
+        target = self.media / source.name
+        number = 2
+        while target.exists() and fingerprint(target) != mark:
+            target = self.media / f"{source.stem}-{number}{source.suffix}"
+            number += 1
+        if not target.exists():
+            beside = target.with_name(f".{target.name}.part")
+            try:
+                self.media.mkdir(exist_ok=True)
+                if source.is_dir():
+                    shutil.copytree(source, beside, dirs_exist_ok=True)
+                else:
+                    shutil.copyfile(source, beside)
+                beside.rename(target)
+            except OSError as error:
+                shutil.rmtree(beside, ignore_errors=True)
+                beside.unlink(missing_ok=True)
+                raise InputError(explain(error, target)) from error
+        return MediaRef(target.relative_to(self.path).as_posix(), mark, linked=False)
+
+    def link(self, source: Path) -> MediaRef:
+        """Give a reference to a file outside the project."""
+        if not source.exists():
+            raise InputError(f"{source} does not exist: check the path.")
+        return MediaRef(str(source.resolve()), fingerprint(source), linked=True)
+
+    def locate(self, media: MediaRef) -> Path:
+        """Find a medium: where the reference says, or moved along with the project folder.
+
+        Raises ``InputError`` when it is not there; whether its content changed is for the caller to compare.
+        """
+        stated = Path(media.path)
+        candidates = [stated if stated.is_absolute() else self.path / stated]
+        if media.linked:
+            candidates += [self.path.parent / stated.name, self.media / stated.name]
+        for candidate in candidates:
+            if candidate.exists() and (candidate == candidates[0] or fingerprint(candidate) == media.fingerprint):
+                return candidate
+        raise InputError(f"{stated.name} is missing: it was expected at {candidates[0]}; say where it lies now.")
+
+    def _read(self, file: Path) -> Document:
+        try:
+            data = file.read_bytes()
+        except OSError as error:
+            raise InputError(f"{file} cannot be read ({error.strerror}).") from error
+        return document_from_json(data, str(file))
