@@ -1,0 +1,251 @@
+"""Runs stages on an executor: needs first, each key once, results into the cache."""
+
+from __future__ import annotations
+
+import os
+import threading
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from pathlib import Path
+from typing import Any, Literal
+
+import attrs
+
+from app.model.values import MediaRef
+from app.stages.cache import ResultCache
+from app.stages.context import Context, Locate, Token
+from app.stages.job import Job, JobState, Listener, Silent
+from app.stages.stage import Stage
+from imitation.errors import Cancelled, InputError
+
+StageState = Literal["fresh", "stale", "running", "failed", "blocked", "missing"]
+
+
+class Runner:
+    """Owns the workers of one open project.
+
+    Parameters
+    ----------
+    cache : where results are found and put.
+    locate : finds media.
+    executor : anything with the interface of ``concurrent.futures.Executor``; None makes threads. Stages that run
+        in other processes report no progress within a stage and stop only between stages.
+    """
+
+    def __init__(self, cache: ResultCache, locate: Locate, executor: Executor | None = None) -> None:
+        self.cache, self.locate = cache, locate
+        self._owned = executor is None
+        self._executor = executor or ThreadPoolExecutor(max(2, (os.cpu_count() or 2) - 1), "stage")
+        self._local = isinstance(self._executor, ThreadPoolExecutor)
+        self._running: dict[str, _Running] = {}
+        self._failed: dict[str, BaseException] = {}
+        self._latest: dict[str, str] = {}
+        self._jobs: set[Job] = set()
+        self._lock = threading.RLock()
+
+    def state(self, stage: Stage) -> StageState:
+        """Say how a stage stands."""
+        if stage in self.cache:
+            return "fresh"
+        with self._lock:
+            if stage.key in self._running:
+                return "running"
+            if stage.key in self._failed:
+                return "failed"
+            if stage.why_blocked() is not None:
+                return "blocked"
+            return "stale" if stage.name in self._latest else "missing"
+
+    def why_failed(self, stage: Stage) -> str | None:
+        """Give the sentence of the failure of this stage, None when it has not failed."""
+        error = self._failed.get(stage.key)
+        return None if error is None else str(error)
+
+    def start(self, label: str, targets: tuple[Stage, ...], listener: Listener | None = None) -> Job:
+        """Compute what is missing for these stages in the background."""
+        job = Job(label, targets, listener or Silent())
+        with self._lock:
+            self._jobs.add(job)
+        threading.Thread(target=self._carry, args=(job,), name=f"job {label}", daemon=True).start()
+        return job
+
+    def run(self, label: str, targets: tuple[Stage, ...], listener: Listener | None = None) -> list[Any]:
+        """Compute and give the results; an error is raised as it came."""
+        job = self.start(label, targets, listener)
+        try:
+            job.wait()
+        except KeyboardInterrupt:
+            job.cancel()
+            job.wait()
+            raise Cancelled from None
+        if job.error is not None:
+            raise job.error
+        if job.state == "cancelled":
+            raise Cancelled
+        return [self.cache.get(stage) for stage in targets]
+
+    @property
+    def jobs(self) -> tuple[Job, ...]:
+        """Jobs that have not ended."""
+        with self._lock:
+            return tuple(self._jobs)
+
+    def close(self) -> None:
+        """Cancel all jobs, wait for their end and stop the own workers."""
+        for job in self.jobs:
+            job.cancel()
+        for job in self.jobs:
+            job.wait()
+        if self._owned:
+            self._executor.shutdown(wait=True, cancel_futures=True)
+
+    def _carry(self, job: Job) -> None:
+        state: JobState = "done"
+        error: BaseException | None = None
+        try:
+            self._compute_all(job)
+        except Cancelled:
+            state = "cancelled"
+        except Exception as failure:  # noqa: BLE001 - whatever a stage raises belongs to the job, not to this thread
+            state, error = "failed", failure
+        with self._lock:
+            self._jobs.discard(job)
+        job.end(state, error)
+
+    def _compute_all(self, job: Job) -> None:
+        order: list[Stage] = []
+        for target in job.targets:
+            order += [stage for stage in target.closure() if stage.key not in {s.key for s in order}]
+        wanted = self._missing(job, order)
+        pending: dict[Future[Any], Stage] = {}
+        try:
+            while wanted or pending:
+                job.token.check()
+                ready = [stage for stage in wanted if all(need in self.cache for need in stage.needs)]
+                for stage in ready:
+                    wanted.remove(stage)
+                    pending[self._submit(job, stage)] = stage
+                done, _ = wait(pending, timeout=0.05, return_when=FIRST_COMPLETED)
+                for future in done:
+                    stage = pending.pop(future)
+                    future.result()
+                    job.report(stage, 1.0)
+                    job.listener.finished_stage(job, stage)
+        finally:
+            for stage in pending.values():
+                self._leave(job, stage)
+            for future in pending:
+                if self._local and not future.cancel():
+                    wait([future])
+
+    def _missing(self, job: Job, order: list[Stage]) -> list[Stage]:
+        """Give the stages to compute: those whose results some missing stage needs, not the whole past."""
+        needed = {target.key for target in job.targets}
+        for stage in reversed(order):
+            if stage.key in needed and stage not in self.cache:
+                needed |= {need.key for need in stage.needs}
+        missing = []
+        for stage in order:
+            if stage.key not in needed or stage in self.cache:
+                job.report(stage, 1.0)
+                continue
+            if stage.blocked is not None:
+                raise InputError(stage.blocked)
+            missing.append(stage)
+        return missing
+
+    def _submit(self, job: Job, stage: Stage) -> Future[Any]:
+        with self._lock:
+            running = self._running.get(stage.key)
+            if running is not None and not running.token.cancelled:
+                running.jobs.add(job)
+                return running.future
+            self._failed.pop(stage.key, None)
+            token = Token()
+            running = _Running(token, {job})
+            self._running[stage.key] = running
+            if self._local:
+                running.future = self._executor.submit(self._compute_here, stage, running)
+            else:
+                results = [self.cache.get(need) for need in stage.needs]
+                found = {media: self.locate(media) for media in _media_in(stage.inputs)}
+                there = self._executor.submit(_compute_there, stage.compute, stage.inputs, results, found)
+                running.future = _then(there, lambda future: self._settle(stage, running, future))
+            return running.future
+
+    def _compute_here(self, stage: Stage, running: _Running) -> None:
+        def progress(fraction: float) -> None:
+            for job in tuple(running.jobs):
+                job.report(stage, fraction)
+
+        def emit(value: Any) -> None:
+            for job in tuple(running.jobs):
+                job.listener.partial(job, stage, value)
+
+        context = Context(self.locate, progress, emit, running.token)
+        future: Future[Any] = Future()
+        try:
+            running.token.check()
+            results = [self.cache.get(need) for need in stage.needs]
+            future.set_result(stage.compute(context, stage.inputs, *results))
+        except BaseException as error:  # noqa: BLE001 - handed on to whoever waits
+            future.set_exception(error)
+        self._settle(stage, running, future)
+
+    def _settle(self, stage: Stage, running: _Running, future: Future[Any]) -> None:
+        """Put a result into the cache, or remember why there is none."""
+        error = future.exception()
+        if error is None:
+            self.cache.put(stage, future.result())
+        with self._lock:
+            if self._running.get(stage.key) is running:
+                del self._running[stage.key]
+            if error is None:
+                self._latest[stage.name] = stage.key
+            elif not isinstance(error, Cancelled):
+                self._failed[stage.key] = error
+        if error is not None:
+            raise error
+
+    def _leave(self, job: Job, stage: Stage) -> None:
+        """A job no longer waits for a stage; the last one to leave stops it."""
+        with self._lock:
+            running = self._running.get(stage.key)
+            if running is not None:
+                running.jobs.discard(job)
+                if not running.jobs:
+                    running.token.cancel()
+
+
+class _Running:
+    future: Future[Any]
+
+    def __init__(self, token: Token, jobs: set[Job]) -> None:
+        self.token, self.jobs = token, jobs
+
+
+def _compute_there(compute: Any, inputs: tuple[Any, ...], results: list[Any], found: dict[MediaRef, Path]) -> Any:
+    return compute(Context(found.__getitem__), inputs, *results)
+
+
+def _media_in(inputs: Any) -> set[MediaRef]:
+    if isinstance(inputs, MediaRef):
+        return {inputs}
+    if isinstance(inputs, tuple):
+        return set().union(*map(_media_in, inputs))
+    if attrs.has(type(inputs)):
+        return set().union(*(_media_in(getattr(inputs, field.name)) for field in attrs.fields(type(inputs))))
+    return set()
+
+
+def _then(future: Future[Any], settle: Any) -> Future[Any]:
+    after: Future[Any] = Future()
+
+    def done(inner: Future[Any]) -> None:
+        try:
+            settle(inner)
+            after.set_result(None)
+        except BaseException as error:  # noqa: BLE001 - handed on to whoever waits
+            after.set_exception(error)
+
+    future.add_done_callback(done)
+    return after
