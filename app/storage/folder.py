@@ -7,10 +7,10 @@ from pathlib import Path
 
 import attrs
 
+from app.formats.atomic import explained, replacing
+from app.formats.fingerprint import file_fingerprint, folder_fingerprint
 from app.model.document import Document
 from app.model.values import MediaRef
-from app.storage.atomic import explain, write_atomically
-from app.storage.fingerprint import fingerprint
 from app.storage.schema import document_from_json, document_to_json
 from imitation.errors import InputError
 
@@ -49,10 +49,8 @@ class ProjectFolder:
         folder = cls(path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX))
         if folder.file.exists():
             raise InputError(f"{folder.path} is a project already: open it, or choose another name.")
-        try:
+        with explained(folder.path):
             folder.path.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(explain(error, folder.path)) from error
         folder.save(document)
         return folder
 
@@ -75,12 +73,12 @@ class ProjectFolder:
 
     def save(self, document: Document) -> None:
         """Write the document and drop the autosave, which it supersedes."""
-        write_atomically(self.file, document_to_json(document))
+        _write(self.file, document_to_json(document))
         self.autosave_file.unlink(missing_ok=True)
 
     def autosave(self, document: Document) -> None:
         """Write the document beside the saved one."""
-        write_atomically(self.autosave_file, document_to_json(document))
+        _write(self.autosave_file, document_to_json(document))
 
     def recoverable(self) -> Document | None:
         """Give the autosaved document of a session that ended without saving, None where there is none to offer."""
@@ -107,16 +105,17 @@ class ProjectFolder:
         if not target.exists():
             beside = target.with_name(f".{target.name}.part")
             try:
-                self.media.mkdir(exist_ok=True)
-                if source.is_dir():
-                    shutil.copytree(source, beside, dirs_exist_ok=True)
-                else:
-                    shutil.copyfile(source, beside)
-                beside.rename(target)
-            except OSError as error:
-                shutil.rmtree(beside, ignore_errors=True)
+                with explained(target):
+                    self.media.mkdir(exist_ok=True)
+                    if source.is_dir():
+                        shutil.copytree(source, beside, dirs_exist_ok=True)
+                    else:
+                        shutil.copyfile(source, beside)
+                    beside.rename(target)
+            finally:
+                if beside.is_dir():
+                    shutil.rmtree(beside, ignore_errors=True)
                 beside.unlink(missing_ok=True)
-                raise InputError(explain(error, target)) from error
         return MediaRef(target.relative_to(self.path).as_posix(), mark, linked=False)
 
     def link(self, source: Path) -> MediaRef:
@@ -145,3 +144,15 @@ class ProjectFolder:
         except OSError as error:
             raise InputError(f"{file} cannot be read ({error.strerror}).") from error
         return document_from_json(data, str(file))
+
+
+def fingerprint(path: Path) -> str:
+    """Give the fingerprint of a file, or of the files of a folder."""
+    if path.is_dir():
+        return folder_fingerprint(sorted(file for file in path.rglob("*") if file.is_file()))
+    return file_fingerprint(path)
+
+
+def _write(path: Path, data: bytes) -> None:
+    with replacing(path) as beside:
+        beside.write_bytes(data)

@@ -12,8 +12,7 @@ from typing import Any
 import attrs
 import numpy as np
 
-from app.storage.atomic import explain
-from imitation.errors import InputError
+from app.formats.atomic import explained
 
 _TRUSTED = ("imitation.", "tvmedit.", "app.")
 
@@ -34,18 +33,18 @@ class ResultStore:
             return
         beside = final.with_name(f".{final.name}.{os.getpid()}.part")
         try:
+            with explained(final):
+                shutil.rmtree(beside, ignore_errors=True)
+                beside.mkdir(parents=True)
+                arrays: list[np.ndarray[Any, Any]] = []
+                body = _encode(value, arrays)
+                for index, array in enumerate(arrays):
+                    np.save(beside / f"{index}.npy", array, allow_pickle=False)
+                (beside / "value.json").write_text(json.dumps(body))
+                shutil.rmtree(final, ignore_errors=True)
+                beside.rename(final)
+        finally:
             shutil.rmtree(beside, ignore_errors=True)
-            beside.mkdir(parents=True)
-            arrays: list[np.ndarray[Any, Any]] = []
-            body = _encode(value, arrays)
-            for index, array in enumerate(arrays):
-                np.save(beside / f"{index}.npy", array, allow_pickle=False)
-            (beside / "value.json").write_text(json.dumps(body))
-            shutil.rmtree(final, ignore_errors=True)
-            beside.rename(final)
-        except OSError as error:
-            shutil.rmtree(beside, ignore_errors=True)
-            raise InputError(explain(error, final)) from error
 
     def load(self, key: str) -> Any:
         """Read a result; raises ``KeyError`` when it is not there or damaged."""
