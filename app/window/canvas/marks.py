@@ -1,0 +1,94 @@
+"""How marks over a picture are drawn, so that they can be read on any picture: each has a dark underlay."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
+
+from app.window import fonts, theme
+
+UNDERLAY = QColor(0, 0, 0, 190)
+PLATE = QColor(0, 0, 0, 205)
+
+
+def stroke(
+    painter: QPainter, path: QPainterPath | QPolygonF, colour: QColor, width: float = 1.8, dash: bool = False
+) -> None:
+    """Draw a line with its underlay."""
+    pen = QPen(UNDERLAY, width + 1.8)
+    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    top = QPen(pen)
+    top.setColor(colour)
+    top.setWidthF(width)
+    if dash:
+        top.setDashPattern([3.0, 2.5])
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for each in (pen, top):
+        painter.setPen(each)
+        if isinstance(path, QPolygonF):
+            painter.drawPolyline(path)
+        else:
+            painter.drawPath(path)
+
+
+def ring(
+    painter: QPainter,
+    x: float,
+    y: float,
+    colour: QColor,
+    radius: float = 5.5,
+    *,
+    filled: bool = False,
+    dot: bool = True,
+) -> None:
+    """A round handle: a ring, or a filled disc."""
+    centre = QPointF(x, y)
+    painter.setPen(QPen(UNDERLAY, 3.6))
+    painter.setBrush(QBrush(colour) if filled else Qt.BrushStyle.NoBrush)
+    painter.drawEllipse(centre, radius, radius)
+    painter.setPen(QPen(QColor(255, 255, 255, 235) if filled else colour, 1.8))
+    painter.drawEllipse(centre, radius, radius)
+    if dot and not filled:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(colour)
+        painter.drawEllipse(centre, 1.5, 1.5)
+
+
+def cross(painter: QPainter, x: float, y: float, colour: QColor, radius: float = 5.0) -> None:
+    """A cross, for what is hidden or refused."""
+    for pen in (QPen(UNDERLAY, 3.6), QPen(colour, 1.6)):
+        painter.setPen(pen)
+        painter.drawLine(QPointF(x - radius, y - radius), QPointF(x + radius, y + radius))
+        painter.drawLine(QPointF(x - radius, y + radius), QPointF(x + radius, y - radius))
+
+
+def plate(
+    painter: QPainter, x: float, y: float, text: str, colour: QColor, *, size: int = fonts.CAPTION, align: str = "left"
+) -> QRectF:
+    """A short text on a dark plate; (x, y) is the middle of its left or right end, or of its centre."""
+    face = fonts.font(size, QFont.Weight.Medium)
+    metrics = QFontMetricsF(face)
+    width, height = metrics.horizontalAdvance(text) + 12, metrics.height() + 4
+    left = x if align == "left" else x - width if align == "right" else x - width / 2
+    box = QRectF(round(left), round(y - height / 2), width, height)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(PLATE)
+    painter.drawRoundedRect(box, 4, 4)
+    painter.setFont(face)
+    painter.setPen(colour)
+    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+    return box
+
+
+def polygon(points: Sequence[Sequence[float]]) -> QPolygonF:
+    """A Qt polygon of widget places (n, 2)."""
+    return QPolygonF([QPointF(float(x), float(y)) for x, y in points])
+
+
+def track_colour(index: int) -> QColor:
+    """The colour of the index-th track; the row repeats after eight."""
+    tracks = theme.active().tracks
+    return theme.active().colour(tracks[index % len(tracks)])

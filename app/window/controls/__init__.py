@@ -1,0 +1,28 @@
+"""Base controls of the window."""
+
+from app.window.controls.buttons import button, icon_button, toggle, tool
+from app.window.controls.error_bar import ErrorBar
+from app.window.controls.labels import Chip, Elided, Header, Row, label, separator
+from app.window.controls.number import NumberField, NumberRange
+from app.window.controls.panel import Panel, ScrollColumn
+from app.window.controls.swatches import Meter, Swatches
+
+__all__ = [
+    "Chip",
+    "Elided",
+    "ErrorBar",
+    "Header",
+    "Meter",
+    "NumberField",
+    "NumberRange",
+    "Panel",
+    "Row",
+    "ScrollColumn",
+    "Swatches",
+    "button",
+    "icon_button",
+    "label",
+    "separator",
+    "toggle",
+    "tool",
+]

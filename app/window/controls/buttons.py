@@ -1,0 +1,72 @@
+"""Buttons: icons with a tooltip that names the key, toggles, tabs and tools."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtWidgets import QPushButton, QToolButton
+
+from app.window import icons
+
+
+def _tooltip(text: str, key: str) -> str:
+    return f"{text}  ({key})" if key else text
+
+
+def icon_button(name: str, text: str, call: Callable[[], object] | None = None, key: str = "") -> QToolButton:
+    """A square button of one icon; its text is the tooltip and what a screen reader says."""
+    button = QToolButton()
+    button.setIcon(icons.icon(name, "text2", "text2"))
+    button.setIconSize(QSize(18, 18))
+    button.setFixedSize(30, 28)
+    button.setToolTip(_tooltip(text, key))
+    button.setAccessibleName(text)
+    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    if call is not None:
+        button.clicked.connect(lambda: call())
+    return button
+
+
+def toggle(name: str, text: str, call: Callable[[bool], object], *, on: bool = False, key: str = "") -> QToolButton:
+    """A button with icon and text that is on or off."""
+    button = QToolButton()
+    button.setProperty("toggle", "true")
+    button.setIcon(icons.icon(name))
+    button.setIconSize(QSize(16, 16))
+    button.setText(text)
+    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+    button.setCheckable(True)
+    button.setChecked(on)
+    button.setToolTip(_tooltip(text, key))
+    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    button.toggled.connect(call)
+    return button
+
+
+def tool(name: str, text: str, key: str = "") -> QToolButton:
+    """A tool of the strip at the left: icon above its name."""
+    button = QToolButton()
+    button.setProperty("tool", "true")
+    button.setIcon(icons.icon(name))
+    button.setIconSize(QSize(18, 18))
+    button.setText(text)
+    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
+    button.setCheckable(True)
+    button.setFixedSize(56, 52)
+    button.setToolTip(_tooltip(text, key))
+    button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    return button
+
+
+def button(text: str, call: Callable[[], object], *, primary: bool = False, name: str = "") -> QPushButton:
+    """A button with a text, in the accent colour where it is the one thing to do next."""
+    made = QPushButton(text)
+    if primary:
+        made.setProperty("primary", "true")
+    if name:
+        made.setIcon(icons.icon(name, "on_accent" if primary else "text", "text"))
+        made.setIconSize(QSize(16, 16))
+    made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    made.clicked.connect(lambda: call())
+    return made

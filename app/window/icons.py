@@ -1,0 +1,96 @@
+"""Icons by meaning: every part of the window asks for what it shows, and only this table names the drawings."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import as_file, files
+
+from PySide6.QtCore import QSize
+from PySide6.QtGui import QIcon, QPixmap
+
+from app.window import theme
+
+NAMES = {
+    "video": "movie-open-outline",
+    "character": "cat",
+    "graph": "graph-outline",
+    "undo": "undo",
+    "redo": "redo",
+    "cancel": "close-circle-outline",
+    "close": "close",
+    "export": "export-variant",
+    "open": "folder-open-outline",
+    "save": "content-save-outline",
+    "sample": "movie-star-outline",
+    "menu": "menu",
+    "select": "cursor-default-outline",
+    "lasso": "lasso",
+    "point": "crosshairs-gps",
+    "contact": "shoe-print",
+    "pan": "hand-back-right-outline",
+    "keys": "keyboard-outline",
+    "first": "skip-previous",
+    "previous_mark": "rewind",
+    "previous": "step-backward",
+    "play": "play",
+    "pause": "pause",
+    "next": "step-forward",
+    "next_mark": "fast-forward",
+    "last": "skip-next",
+    "fit": "fit-to-screen-outline",
+    "fit_time": "arrow-expand-horizontal",
+    "paths": "vector-polyline",
+    "labels": "tag-outline",
+    "magnifier": "magnify-plus-outline",
+    "masks": "vector-polygon",
+    "camera": "video-3d",
+    "orbit": "orbit",
+    "side": "angle-right",
+    "grid": "grid",
+    "ghosts": "layers-outline",
+    "background": "image-outline",
+    "tracks": "vector-polyline",
+    "pose": "human-handsup",
+    "solution": "check-circle-outline",
+    "reprojection": "chart-line-variant",
+    "error": "alert-circle-outline",
+    "warning": "alert-outline",
+    "note": "information-outline",
+    "reset": "restore",
+    "delete": "trash-can-outline",
+    "rename": "pencil-outline",
+    "run": "play",
+    "propagate": "arrow-expand-horizontal",
+    "go": "arrow-right",
+    "add": "plus",
+    "link": "link-variant",
+    "unlink": "link-variant-off",
+    "history": "history",
+    "magnet": "magnet",
+}
+
+
+@cache
+def _icon(name: str, normal: str, checked: str, disabled: str) -> QIcon:
+    import qtawesome
+
+    drawing = f"mdi6.{NAMES[name]}"
+    return qtawesome.icon(drawing, color=normal, color_on=checked, color_disabled=disabled)
+
+
+def icon(name: str, token: str = "text2", checked: str = "accent") -> QIcon:
+    """The icon of a meaning in the colour of a token, of another token where it is switched on."""
+    look = theme.active()
+    return _icon(name, look.colour(token).name(), look.colour(checked).name(), look.line2)
+
+
+def pixmap(name: str, token: str = "text2", size: int = 16) -> QPixmap:
+    """The same as a picture of a size in pixels."""
+    return icon(name, token).pixmap(QSize(size, size))
+
+
+@cache
+def application_icon() -> QIcon:
+    """The program's own mark."""
+    with as_file(files("resources") / "icons" / "motionwright.svg") as path:
+        return QIcon(str(path))
