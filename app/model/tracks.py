@@ -37,6 +37,7 @@ class Track:
     Attributes
     ----------
     clicks : frame -> pixel, as the user gave them (corrections are clicks too).
+    masked : whether the subject's masks rule out places beside the subject.
     absent : frames in which the track has ended, until it restarts.
     occluded : frames in which the user says that the point is hidden.
     contacts : planted intervals, in order, not overlapping.
@@ -50,6 +51,7 @@ class Track:
     clicks: FrozenMap[int, Point2]
     colour: int = 0
     mode: TrackMode = "robust"
+    masked: bool = False
     absent: tuple[Interval, ...] = ()
     occluded: tuple[Interval, ...] = ()
     contacts: tuple[Contact, ...] = ()

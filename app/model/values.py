@@ -52,9 +52,10 @@ class MediaRef:
     linked : whether the file lies outside the project folder.
     """
 
-    path: str
+    # Keys of results are made of what ``repr`` shows: a moved file gives the same results, so its place is not shown.
+    path: str = attrs.field(repr=False)
     fingerprint: str
-    linked: bool = True
+    linked: bool = attrs.field(default=True, repr=False)
     unknown: Unknown = attrs.field(factory=FrozenMap, repr=False)
 
 

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
-from app.model.values import MediaRef
+from app.stages.media import Media
 from imitation.errors import Cancelled
 from imitation.progress import silent
-
-Locate = Callable[[MediaRef], Path]
 
 
 class Token:
@@ -40,12 +37,12 @@ class Context:
 
     def __init__(
         self,
-        locate: Locate,
+        media: Media,
         progress: Callable[[float], None] = silent,
         emit: Callable[[Any], None] = silent,
         token: Token | None = None,
     ) -> None:
-        self.locate = locate
+        self.media = media
         self._progress, self._emit = progress, emit
         self.token = token or Token()
 

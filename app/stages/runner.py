@@ -12,8 +12,9 @@ import attrs
 
 from app.model.values import MediaRef
 from app.stages.cache import ResultCache
-from app.stages.context import Context, Locate, Token
+from app.stages.context import Context, Token
 from app.stages.job import Job, JobState, Listener, Silent
+from app.stages.media import Media
 from app.stages.stage import Stage
 from imitation.errors import Cancelled, InputError
 
@@ -26,13 +27,13 @@ class Runner:
     Parameters
     ----------
     cache : where results are found and put.
-    locate : finds media.
+    media : opens what the document refers to.
     executor : anything with the interface of ``concurrent.futures.Executor``; None makes threads. Stages that run
         in other processes report no progress within a stage and stop only between stages.
     """
 
-    def __init__(self, cache: ResultCache, locate: Locate, executor: Executor | None = None) -> None:
-        self.cache, self.locate = cache, locate
+    def __init__(self, cache: ResultCache, media: Media, executor: Executor | None = None) -> None:
+        self.cache, self.media = cache, media
         self._owned = executor is None
         self._executor = executor or ThreadPoolExecutor(max(2, (os.cpu_count() or 2) - 1), "stage")
         self._local = isinstance(self._executor, ThreadPoolExecutor)
@@ -167,7 +168,7 @@ class Runner:
                 running.future = self._executor.submit(self._compute_here, stage, running)
             else:
                 results = [self.cache.get(need) for need in stage.needs]
-                found = {media: self.locate(media) for media in _media_in(stage.inputs)}
+                found = {media: self.media.locate(media) for media in _media_in(stage.inputs)}
                 there = self._executor.submit(_compute_there, stage.compute, stage.inputs, results, found)
                 running.future = _then(there, lambda future: self._settle(stage, running, future))
             return running.future
@@ -181,7 +182,7 @@ class Runner:
             for job in tuple(running.jobs):
                 job.listener.partial(job, stage, value)
 
-        context = Context(self.locate, progress, emit, running.token)
+        context = Context(self.media, progress, emit, running.token)
         future: Future[Any] = Future()
         try:
             running.token.check()
@@ -224,7 +225,11 @@ class _Running:
 
 
 def _compute_there(compute: Any, inputs: tuple[Any, ...], results: list[Any], found: dict[MediaRef, Path]) -> Any:
-    return compute(Context(found.__getitem__), inputs, *results)
+    media = Media(found.__getitem__)
+    try:
+        return compute(Context(media), inputs, *results)
+    finally:
+        media.close()
 
 
 def _media_in(inputs: Any) -> set[MediaRef]:

@@ -128,6 +128,13 @@ def set_track_mode(document: Document, track_id: str, mode: TrackMode) -> Edit:
     return Edit(document.with_track(attrs.evolve(track, mode=mode)), f"Track {track.name} in mode {mode}")
 
 
+def set_track_masked(document: Document, track_id: str, masked: bool) -> Edit:
+    """Choose whether the masks rule out places beside the subject."""
+    track = document.track(track_id)
+    label = f"Keep {track.name} inside the mask" if masked else f"Let {track.name} leave the mask"
+    return Edit(document.with_track(attrs.evolve(track, masked=masked)), label)
+
+
 def set_track_look(
     document: Document, track_id: str, *, colour: int | None = None, visible: bool | None = None
 ) -> Edit:

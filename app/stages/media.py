@@ -1,0 +1,88 @@
+"""Media for stages: frames and meshes, opened once and shared."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from app.formats import FrameSource, MeshFile, open_images, open_video, read_mesh
+from app.model.values import Clip, MediaRef
+from imitation.errors import InputError
+
+PYRAMIDS = 512 << 20
+Locate = Callable[[MediaRef], Path]
+
+
+class Media:
+    """Opens what the document refers to; safe to use from several threads."""
+
+    def __init__(self, locate: Locate) -> None:
+        self.locate = locate
+        self._frames: dict[str, FrameSource] = {}
+        self._meshes: dict[str, MeshFile] = {}
+        self._rooms: dict[str, Any] = {}
+        self._prepared: tuple[tuple[str, int, int], Any] | None = None
+        self._lock = threading.Lock()
+
+    def frames(self, clip: Clip) -> FrameSource:
+        """Give the clip's frames; refuses a file that is not the one the project was made with."""
+        with self._lock:
+            source = self._frames.get(clip.media.fingerprint)
+            if source is None:
+                path = self.locate(clip.media)
+                source = open_images(path, fps=clip.fps) if path.is_dir() else open_video(path)
+                if (len(source), *source.size) != (clip.frame_count, clip.width, clip.height):
+                    has = f"{len(source)} frames of {source.size[0]} x {source.size[1]}"
+                    source.close()
+                    raise InputError(
+                        f"{Path(clip.media.path).name} is another clip now: it has {has}, the project was made with "
+                        f"{clip.frame_count} of {clip.width} x {clip.height}; put the old file back."
+                    )
+                self._frames[clip.media.fingerprint] = source
+            return source
+
+    def mesh(self, media: MediaRef) -> MeshFile:
+        """Give a character's mesh."""
+        with self._lock:
+            mesh = self._meshes.get(media.fingerprint)
+            if mesh is None:
+                mesh = self._meshes[media.fingerprint] = read_mesh(self.locate(media))
+            return mesh
+
+    def flow_room(self, clip: Clip) -> Any:
+        """Give the flow field of this clip that a cancelled computation left, or an empty one."""
+        from imitation.tracking import FlowField
+
+        with self._lock:
+            key = clip.media.fingerprint
+            if key not in self._rooms:
+                self._rooms = {key: FlowField.empty(clip.frame_count, clip.height, clip.width)}
+            return self._rooms[key]
+
+    def leave_flow_room(self) -> None:
+        """Forget the flow fields: they are results now."""
+        with self._lock:
+            self._rooms.clear()
+
+    def prepared(self, clip: Clip, flow: Any, masks: Any) -> Any:
+        """Give the clip made ready for tracking; the spans of one clip share its pyramids."""
+        from imitation.tracking import prepare_clip
+
+        frames, key = self.frames(clip), (clip.media.fingerprint, id(flow), id(masks))
+        with self._lock:
+            if self._prepared is None or self._prepared[0] != key:
+                ready = prepare_clip(frames, flow=flow, masks=masks, memory=PYRAMIDS)
+                self._prepared = (key, ready)
+            return self._prepared[1]
+
+    def close(self) -> None:
+        """Close all files."""
+        with self._lock:
+            for source in self._frames.values():
+                source.close()
+            self._frames.clear()
+            self._meshes.clear()
+            self._rooms.clear()
+            self._prepared = None

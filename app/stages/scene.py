@@ -1,0 +1,88 @@
+"""Stages of the scene: cameras, the world they stand in, and where contacts lie."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from app.model.document import Document
+from app.model.tracks import Contact, Track
+from app.model.values import Clip
+from app.model.world import CameraChoice, WorldChoice
+from app.stages import tracking
+from app.stages.context import Context
+from app.stages.results import Masks, PlacedContact, World
+from app.stages.stage import Stage
+from imitation import CameraPath
+from imitation.errors import InputError
+
+
+def cameras(document: Document) -> Stage:
+    """The camera path in its own units."""
+    clip, choice = document.clip, document.camera
+    if clip is None:
+        return Stage("cameras", "Solving the cameras", _cameras, blocked=tracking.NO_CLIP)
+    needs = (tracking.masks(document),) if choice.source == "solve" else ()
+    seconds = 0.4 * clip.frame_count if choice.source == "solve" else 0.1
+    return Stage("cameras", "Solving the cameras", _cameras, (clip, choice), needs, weight=seconds)
+
+
+def world(document: Document) -> Stage:
+    """The camera path with Z up and in metres, as far as they are known."""
+    needs = (cameras(document),)
+    return Stage("world", "Finding the ground", _world, (document.world,), needs, weight=0.2)
+
+
+def contacts(document: Document, track: Track) -> Stage:
+    """The contacts of a track with their places, in the world."""
+    needs = (world(document), tracking.track(document, track), cameras(document))
+    inputs = (track.name, track.contacts, document.world)
+    return Stage(f"contacts/{track.id}", f"Placing contacts of {track.name}", _contacts, inputs, needs, weight=0.05)
+
+
+def _cameras(context: Context, inputs: tuple[Clip, CameraChoice], masks: Masks | None = None) -> CameraPath:
+    clip, choice = inputs
+    if choice.source == "file":
+        from app.formats.cameras import read_cameras
+
+        assert choice.file is not None
+        path: CameraPath = read_cameras(context.media.locate(choice.file))
+        if len(path) != clip.frame_count:
+            raise InputError(
+                f"The camera file holds {len(path)} cameras, but the clip has {clip.frame_count} frames: "
+                "export one camera a frame."
+            )
+        return path
+    if choice.source == "static":
+        return _static(clip, choice.focal)
+    from imitation.cameras import solve_cameras
+
+    frames = context.media.frames(clip)
+    return solve_cameras(frames, masks=masks, focal=choice.focal, progress=context.progress)
+
+
+def _static(clip: Clip, focal: float | None) -> CameraPath:
+    guessed = focal or 1.2 * max(clip.width, clip.height)
+    K = np.array([[guessed, 0, (clip.width - 1) / 2], [0, guessed, (clip.height - 1) / 2], [0, 0, 1.0]])
+    count = clip.frame_count
+    reason = "The camera was said to stand still: depth, up and scale are unknown."
+    return CameraPath(
+        np.tile(K, (count, 1, 1)), np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3)), "static", reason=reason
+    )
+
+
+def _world(context: Context, inputs: tuple[WorldChoice], path: CameraPath) -> World:
+    from app.stages.worldframe import make_world
+
+    (choice,) = inputs
+    return make_world(choice, path)
+
+
+def _contacts(
+    context: Context, inputs: tuple[str, tuple[Contact, ...], WorldChoice], world_: World, track: Any, path: CameraPath
+) -> list[PlacedContact]:
+    from app.stages.worldframe import place_contact
+
+    name, contacts_, choice = inputs
+    return [place_contact(contact, name, track, choice, world_, path) for contact in contacts_]
