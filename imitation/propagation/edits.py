@@ -1,0 +1,109 @@
+"""Edits: what a drag in one frame commits, and the pose it leaves there (paper A, 3.6)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from imitation.errors import InputError
+from imitation.motion.banded import Array
+from imitation.propagation.base import SOFT, Base, make_deformer
+
+if TYPE_CHECKING:
+    from imitation.deformation import Deformer
+
+Committed = Mapping[int, ArrayLike]
+"""vertex -> place (3,): positions of all key points and of the control vertices in one edited frame."""
+
+
+def commit_edit(
+    base: Base,
+    frame: int,
+    moves: Mapping[int, ArrayLike],
+    *,
+    pose: Array | None = None,
+    pinned: Collection[int] = (),
+    deformer: Deformer | None = None,
+) -> dict[int, Array]:
+    """Deform one frame after its control vertices were moved, and say where that leaves everything.
+
+    The moved vertices are hard. The other key points go back on their rays with a weak pull to their depth, so that
+    they give way in the direction that the video says nothing about; those in contact and the pinned ones stay.
+
+    Parameters
+    ----------
+    base : the base solution.
+    frame : the edited frame.
+    moves : vertex -> place (3,), world: all control vertices of this frame, earlier ones too.
+    pose : (v, 3) the frame as the user sees it; default the base solution's.
+    pinned : key points or control vertices that must stay where they are in ``pose``.
+    deformer : a prepared `Deformer` of this mesh.
+
+    Returns
+    -------
+    vertex -> place (3,) of every key point and of every moved or pinned vertex: the edit's committed positions.
+    """
+    check_places(base, {frame: moves})
+    return _solve_edit(base, frame, moves, pose, pinned, deformer)[0]
+
+
+def edited_pose(base: Base, frame: int, committed: Committed, *, deformer: Deformer | None = None) -> Array:
+    """The pose (v, 3) of an edited frame: a function of the base solution and the frame's committed positions alone."""
+    check_places(base, {frame: committed})
+    deformer = deformer or make_deformer(base.rest, base.faces)
+    points = dict(zip(base.keys.vertices.tolist(), base.lifted[frame], strict=True))
+    points.update({int(vertex): np.asarray(place, np.float64) for vertex, place in committed.items()})
+    return deformer.solve(points, start=base.vertices[frame])
+
+
+def check_places(base: Base, edits: Mapping[int, Mapping[int, ArrayLike]]) -> None:
+    """Refuse edits outside the clip or of vertices that do not exist, and places that are not finite."""
+    for frame, places in edits.items():
+        if not 0 <= frame < len(base):
+            raise InputError(
+                f"The edit in frame {frame} is outside the clip, whose frames are 0 to {len(base) - 1}; remove it."
+            )
+        for vertex, place in places.items():
+            if not 0 <= vertex < len(base.rest):
+                raise InputError(
+                    f"The edit in frame {frame} moves vertex {vertex}, but the character has {len(base.rest)} vertices."
+                )
+            point = np.asarray(place, np.float64)
+            if point.shape != (3,) or not np.isfinite(point).all():
+                raise InputError(f"The place of vertex {vertex} in edited frame {frame} needs three finite numbers.")
+
+
+def _solve_edit(
+    base: Base,
+    frame: int,
+    moves: Mapping[int, ArrayLike],
+    pose: Array | None,
+    pinned: Collection[int],
+    deformer: Deformer | None,
+) -> tuple[dict[int, Array], Array]:
+    deformer = deformer or make_deformer(base.rest, base.faces)
+    current = base.vertices[frame] if pose is None else np.asarray(pose, np.float64)
+    if current.shape != base.rest.shape:
+        raise InputError(f"The pose to edit needs shape {base.rest.shape}, but has {current.shape}.")
+    camera = base.cameras[frame]
+    points = {int(vertex): np.asarray(place, np.float64) for vertex, place in moves.items()}
+    for vertex in pinned:
+        points.setdefault(int(vertex), current[vertex])
+    rays, depths, softness = {}, {}, {}
+    for key, vertex in enumerate(base.keys.vertices.tolist()):
+        if vertex in points:
+            continue
+        if base.keys.planted[frame, key]:
+            points[vertex] = current[vertex]
+        else:
+            pixel = camera.project(current[vertex])
+            rays[vertex] = (float(pixel[0]), float(pixel[1]))
+            depths[vertex] = float(camera.depth(current[vertex]))
+            softness[vertex] = SOFT
+    posed = deformer.solve(points, rays, camera, start=current, depths=depths, softness=softness)
+    committed = {vertex: posed[vertex].copy() for vertex in base.keys.vertices.tolist()}
+    committed.update({vertex: place.copy() for vertex, place in points.items()})
+    return committed, posed

@@ -1,0 +1,93 @@
+"""The whole way from tracks to a moving character (paper A, 3.2-3.6)."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from imitation.cameras import CameraPath
+from imitation.motion.anchors import Loss
+from imitation.motion.contacts import Contact
+from imitation.progress import Progress, part
+from imitation.propagation.base import Method, OnFrame, make_deformer, solve_base
+from imitation.propagation.edits import check_places, commit_edit
+from imitation.propagation.propagate import Imitation, propagate
+
+if TYPE_CHECKING:
+    from imitation.deformation import Deformer
+
+
+def imitate(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    cameras: CameraPath,
+    tracks: Mapping[str, ArrayLike],
+    pairs: Mapping[str, int],
+    contacts: Mapping[str, Sequence[Contact]] | None = None,
+    *,
+    edits: Mapping[int, Mapping[int, ArrayLike]] | None = None,
+    method: Method = "joint",
+    confidence: Mapping[str, ArrayLike] | None = None,
+    loss: Loss = "quadratic",
+    alpha: float = 10.0,
+    smooth: bool | None = None,
+    muted: Collection[int] = (),
+    follow: Mapping[int, str] | None = None,
+    end: int | None = None,
+    reach: Mapping[int, tuple[int | None, int | None]] | None = None,
+    deformer: Deformer | None = None,
+    on_frame: OnFrame | None = None,
+    progress: Progress | None = None,
+) -> Imitation:
+    """Move a character as the filmed subject moves.
+
+    Parameters
+    ----------
+    vertices, faces : the character (v, 3), (m, 3), aligned with the subject in frame 0, world.
+    cameras : one camera a frame.
+    tracks : name -> (n, 2) pixels, NaN where absent.
+    pairs : track name -> vertex.
+    contacts : track name -> intervals (first frame, last frame, place (3,) world) in which the point is planted.
+    edits : frame -> {vertex: place (3,) world} as the user dragged them.
+    method : "joint" (default) or "paper", the printed route.
+    confidence : track name -> (n,) in [0, 1].
+    loss : "robust" lets an anchor's depth change suddenly (eq. 3).
+    alpha : depth smoothing of the printed route (eq. 12).
+    smooth, follow, end, reach : see `propagate`.
+    muted : control vertices whose edits do not count for now.
+    deformer : a prepared `Deformer` of this mesh, to be shared between calls.
+    on_frame : called with (frame, vertices) as frames of the final pass are ready.
+
+    Returns
+    -------
+    Imitation
+        ``.vertices`` (n, v, 3), ``.key_points`` (n, k, 3), ``.report``.
+
+    Raises
+    ------
+    InputError
+        The parts do not fit each other; one sentence says which and what to do.
+    """
+    moves = {
+        frame: {vertex: place for vertex, place in places.items() if vertex not in muted}
+        for frame, places in (edits or {}).items()
+    }
+    moves = {frame: places for frame, places in moves.items() if places}
+    if deformer is None:
+        deformer = make_deformer(np.asarray(vertices, np.float64), np.asarray(faces, np.int32))
+    share = 0.7 if moves else 1.0
+    base = solve_base(
+        vertices, faces, cameras, tracks, pairs, contacts,
+        method=method, confidence=confidence, loss=loss, alpha=alpha, deformer=deformer,
+        progress=part(progress, 0.0, share), on_frame=None if moves else on_frame,
+    )  # fmt: skip
+    check_places(base, moves)
+    committed = {frame: commit_edit(base, frame, places, deformer=deformer) for frame, places in moves.items()}
+    return propagate(
+        base, committed,
+        smooth=smooth, follow=follow, end=end, reach=reach, deformer=deformer,
+        on_frame=on_frame if moves else None, progress=part(progress, share, 1.0),
+    )  # fmt: skip

@@ -1,0 +1,195 @@
+"""Spans between edited frames, and the frames of one span after an edit (paper A, 3.6; eq. 5-6)."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.errors import InputError
+from imitation.motion.banded import Array
+from imitation.motion.transfer import span_share, swing_clock
+from imitation.propagation.base import Base
+
+if TYPE_CHECKING:
+    from imitation.deformation import Deformer
+
+Places = dict[int, Array]
+
+
+@attrs.frozen(eq=False)
+class Knot:
+    """A frame whose pose is given: frame 0, an edited frame, or the end of an edit's reach (the base's own pose)."""
+
+    frame: int
+    committed: Places | None
+
+
+@attrs.frozen(eq=False)
+class Span:
+    """The frames between two knots; ``last`` is None where the correction of ``first`` is held to the end."""
+
+    first: Knot
+    last: Knot | None
+    stop: int
+
+    @property
+    def frames(self) -> range:
+        """The frames to be deformed: those strictly inside."""
+        return range(self.first.frame + 1, self.stop)
+
+    @property
+    def touched(self) -> bool:
+        """Whether anything here differs from the base solution."""
+        return self.first.committed is not None or (self.last is not None and self.last.committed is not None)
+
+    def controls(self, keys: frozenset[int]) -> list[int]:
+        """Control vertices that were dragged at one of the two ends."""
+        ends = [knot.committed or {} for knot in (self.first, self.last) if knot is not None]
+        return sorted({vertex for places in ends for vertex in places} - keys)
+
+
+def cut_spans(
+    count: int, edits: Mapping[int, Places], reach: Mapping[int, tuple[int | None, int | None]]
+) -> list[Span]:
+    """Cut a clip at its edited frames and at the ends of their reach.
+
+    ``reach`` gives, for an edited frame, the frames (in, out) outside which it changes
+    nothing; None leaves an end open.
+    """
+    knots: dict[int, Places | None] = {0: None}
+    ordered = sorted(edits)
+    for place, frame in enumerate(ordered):
+        before = ordered[place - 1] if place else 0
+        after = ordered[place + 1] if place + 1 < len(ordered) else count
+        first, last = reach.get(frame, (None, None))
+        for end, allowed in ((first, before <= (first or 0) <= frame), (last, frame <= (last or 0) < after)):
+            if end is not None and not 0 <= end < count:
+                raise InputError(f"The reach of the edit in frame {frame} ends in frame {end}, outside the clip.")
+            if end is not None and allowed and end not in edits:
+                knots[end] = None
+        if (first is not None and first > frame) or (last is not None and last < frame):
+            raise InputError(f"The reach of the edit in frame {frame} does not contain that frame; widen it.")
+    knots.update(edits)
+    frames = sorted(knots)
+    cut = [Knot(frame, knots[frame]) for frame in frames]
+    spans = [Span(first, last, last.frame) for first, last in pairwise(cut)]
+    return [*spans, Span(cut[-1], None, count)]
+
+
+class SpanSolver:
+    """Deforms the frames of one span; each frame depends on the base solution and the span's two ends alone."""
+
+    def __init__(
+        self,
+        base: Base,
+        span: Span,
+        poses: Array,
+        deformer: Deformer,
+        *,
+        smooth: bool,
+        follow: Mapping[int, int],
+        two_pass: bool = True,
+    ) -> None:
+        self.base, self.span, self.deformer, self.smooth = base, span, deformer, smooth
+        self.keys = base.keys.vertices.tolist()
+        self.controls = span.controls(frozenset(self.keys)) if two_pass else []
+        self.follow = {vertex: follow[vertex] for vertex in self.controls if vertex in follow}
+        knots = [knot for knot in (span.first, span.last) if knot is not None]
+        self.ends = [knot.frame for knot in knots]
+        self._poses = [poses[frame] for frame in self.ends]
+        targets = [_key_places(base, knot) for knot in knots]
+        self._corrections = [target - base.lifted[frame] for target, frame in zip(targets, self.ends, strict=True)]
+        self._clocks = [swing_clock(base.keys.planted[:, key]) for key in range(len(self.keys))]
+        self._shares = [self._share(clock) for clock in self._clocks]
+        self._firsts: dict[int, Array] = {}
+        self._offsets: dict[int, tuple[list[Array], Array]] = {}
+        for vertex in self.controls:
+            self._offsets[vertex] = self._control_offsets(vertex)
+
+    def key_targets(self, frame: int) -> Array:
+        """Corrected places (k, 3) of all key points (eq. 5-6 in space)."""
+        return np.stack([
+            self.base.lifted[frame, key]
+            + self._blend([corrections[key] for corrections in self._corrections], self._shares[key], frame)
+            for key in range(len(self.keys))
+        ])  # fmt: skip
+
+    def first_pass(self, frame: int) -> Array:
+        """Vertices (v, 3) of a frame with the old key points only."""
+        if frame not in self._firsts:
+            self._firsts[frame] = self._deform(frame, self.key_targets(frame), {}, self.base.vertices[frame])
+        return self._firsts[frame]
+
+    def frame(self, frame: int) -> Array:
+        """Vertices (v, 3) of a frame: one pass where every motion gradient is known, else two."""
+        passive = [vertex for vertex in self.controls if vertex not in self.follow]
+        if not self.controls:
+            result = self.first_pass(frame)
+            self._firsts.pop(frame, None)
+            return result
+        targets = self.key_targets(frame)
+        points: Places = {}
+        start = self.first_pass(frame) if passive else self.base.vertices[frame]
+        for vertex in self.controls:
+            offsets, share = self._offsets[vertex]
+            points[vertex] = self._gradient(vertex, frame) + self._blend(offsets, share, frame)
+        self._firsts.pop(frame, None)
+        return self._deform(frame, targets, points, start)
+
+    def signature(self) -> bytes:
+        """Digest of everything the span's frames depend on besides the base solution."""
+        digest = hashlib.sha256(f"{self.ends} {self.span.stop} {self.smooth} {self.controls} {self.follow}".encode())
+        for pose, corrections in zip(self._poses, self._corrections, strict=True):
+            digest.update(np.ascontiguousarray(corrections).tobytes())
+            digest.update(np.ascontiguousarray(pose[self.controls]).tobytes())
+        return digest.digest()
+
+    def _share(self, clock: Array | None) -> Array:
+        if self.span.last is None:
+            return np.zeros(self.span.stop - self.span.first.frame)
+        return span_share(self.span.first.frame, self.span.last.frame, smooth=self.smooth, clock=clock)
+
+    def _blend(self, values: list[Array], share: Array, frame: int) -> Array:
+        if len(values) == 1:
+            return values[0]
+        weight = share[frame - self.span.first.frame]
+        return (1 - weight) * values[0] + weight * values[1]
+
+    def _gradient(self, vertex: int, frame: int) -> Array:
+        """The track that a control vertex follows: that of a key point, or its own in the first pass."""
+        if vertex in self.follow:
+            place: Array = self.base.lifted[frame, self.follow[vertex]]
+            return place
+        return self.first_pass(frame)[vertex]
+
+    def _control_offsets(self, vertex: int) -> tuple[list[Array], Array]:
+        """Boundary values of a control vertex: its place in both poses, also where it was not dragged."""
+        offsets = [pose[vertex] - self._gradient(vertex, end) for pose, end in zip(self._poses, self.ends, strict=True)]
+        nearest = self.follow.get(vertex)
+        if nearest is None:
+            nearest = int(np.argmin(((self.base.rest[self.keys] - self.base.rest[vertex]) ** 2).sum(axis=1)))
+        return offsets, self._shares[nearest]
+
+    def _deform(self, frame: int, targets: Array, controls: Places, start: Array) -> Array:
+        points = dict(zip(self.keys, targets, strict=True)) | controls
+        softness = dict(zip(self.keys, self.base.softness[frame].tolist(), strict=True))
+        return self.deformer.solve(points, start=start, softness=softness)
+
+
+def _key_places(base: Base, knot: Knot) -> Array:
+    places = base.lifted[knot.frame].copy()
+    for key, vertex in enumerate(base.keys.vertices.tolist()):
+        if knot.committed is not None and vertex in knot.committed:
+            places[key] = knot.committed[vertex]
+    return places
+
+
+def sorted_outward(frames: NDArray[np.int64], origin: int) -> list[int]:
+    """Frames in the order of their distance from the edited one, later before earlier: t + 1, t - 1, t + 2, ..."""
+    return sorted((int(frame) for frame in frames), key=lambda frame: (abs(frame - origin), frame < origin))
