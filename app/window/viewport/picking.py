@@ -1,0 +1,63 @@
+"""Which vertex lies under the mouse: projected and compared in numpy, exact, without the graphics card."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.geometry import Camera
+
+Array = NDArray[np.float64]
+REACH = 10.0
+
+
+def pick_vertex(
+    camera: Camera, vertices: Array, faces: NDArray[np.int32], place: tuple[float, float], reach: float = REACH
+) -> int | None:
+    """The visible vertex nearest to a widget place, within reach pixels; None where there is none.
+
+    A vertex is hidden if a triangle that it does not belong to covers it nearer to the camera.
+    """
+    local = vertices @ camera.R.T + camera.T
+    image = local @ camera.K.T
+    depth = local[:, 2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pixels = image[:, :2] / image[:, 2:]
+        away = np.hypot(pixels[:, 0] - place[0], pixels[:, 1] - place[1])
+    away = np.where(depth > 0, away, np.inf)
+    found = np.flatnonzero(away <= reach)
+    if not len(found):
+        return None
+    found = found[np.lexsort((depth[found], away[found]))]
+    near = _triangles_near(pixels, depth, faces, place, reach)
+    for vertex in found:
+        if not _covered(int(vertex), pixels, depth, near):
+            return int(vertex)
+    return None
+
+
+def _triangles_near(
+    pixels: Array, depth: Array, faces: NDArray[np.int32], place: tuple[float, float], reach: float
+) -> NDArray[np.int32]:
+    """The triangles in front of the camera whose box touches the circle."""
+    x, y = pixels[:, 0][faces], pixels[:, 1][faces]
+    with np.errstate(invalid="ignore"):
+        keep = (x.min(1) <= place[0] + reach) & (x.max(1) >= place[0] - reach)
+        keep &= (y.min(1) <= place[1] + reach) & (y.max(1) >= place[1] - reach)
+    near = faces[keep]
+    kept: NDArray[np.int32] = near[(depth[near] > 0).all(1)]
+    return kept
+
+
+def _covered(vertex: int, pixels: Array, depth: Array, triangles: NDArray[np.int32]) -> bool:
+    others = triangles[(triangles != vertex).all(1)]
+    a, b, c = (pixels[others[:, corner]] for corner in range(3))
+    ab, ac, ap = b - a, c - a, pixels[vertex] - a
+    area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+    area = np.where(np.abs(area) < 1e-12, np.nan, area)
+    v = (ap[:, 0] * ac[:, 1] - ap[:, 1] * ac[:, 0]) / area
+    w = (ab[:, 0] * ap[:, 1] - ab[:, 1] * ap[:, 0]) / area
+    inside = (v > 0) & (w > 0) & (v + w < 1)
+    nearer = 1 / depth[others]
+    inverse = nearer[:, 0] + v * (nearer[:, 1] - nearer[:, 0]) + w * (nearer[:, 2] - nearer[:, 0])
+    return bool(np.any(inside & (inverse * depth[vertex] > 1.0 + 1e-3)))

@@ -1,0 +1,75 @@
+"""A host that draws off-screen and paints the picture itself: needs no OpenGL from Qt, and is cheap on software GL."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QImage, QPainter, QPaintEvent
+from PySide6.QtWidgets import QWidget
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
+
+from app.window.viewport.background import Background
+from app.window.viewport.lens import Lens
+from app.window.viewport.scene import Scene
+
+
+class RasterHost(QWidget):
+    """Shows a scene by painting its off-screen picture over the background."""
+
+    name = "software picture"
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.plotter: Any = pv.Plotter(off_screen=True, window_size=(64, 64), lighting="none")
+        self.plotter.render_window.SetAlphaBitPlanes(1)
+        self.scene = Scene(self.plotter)
+        self.background = Background()
+        self._pixels = vtkUnsignedCharArray()
+        self._rows: np.ndarray | None = None
+        self._picture = QImage()
+        self._size = (0, 0)
+        self.renders = 0
+
+    def draw(self, lens: Lens, *, fine: bool) -> None:
+        """Draw the scene by a lens; ``fine`` draws twice as large and scales down, for a view at rest."""
+        if self.plotter is None or min(lens.size) < 2:
+            return
+        factor = self.devicePixelRatioF() * (2.0 if fine else 1.0)
+        size = (max(round(lens.size[0] * factor), 2), max(round(lens.size[1] * factor), 2))
+        window = self.plotter.render_window
+        if size != self._size:
+            window.SetSize(*size)
+            self._size = size
+        self.scene.look_through(lens)
+        window.Render()
+        window.GetRGBACharPixelData(0, 0, size[0] - 1, size[1] - 1, 0, self._pixels)
+        rows = vtk_to_numpy(self._pixels).reshape(size[1], size[0], 4)
+        self._rows = np.ascontiguousarray(rows[::-1])
+        self._picture = QImage(
+            self._rows.data, size[0], size[1], 4 * size[0], QImage.Format.Format_RGBA8888_Premultiplied
+        )
+        self.renders += 1
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint the background, then the picture of the scene."""
+        painter = QPainter(self)
+        self.background.paint(painter, self.width(), self.height())
+        painter.setOpacity(self.background.mesh_opacity)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        painter.drawImage(QRectF(0, 0, self.width(), self.height()), self._picture)
+        painter.end()
+
+    def finish(self) -> None:
+        """Close the render window; nothing can be drawn afterwards."""
+        if self.plotter is None:
+            return
+        plotter, self.plotter = self.plotter, None
+        self._picture, self._rows = QImage(), None
+        self.scene.clear()
+        plotter.render_window.Finalize()
+        plotter.close()
+        plotter.deep_clean()

@@ -1,0 +1,195 @@
+"""The one 3D scene: a mesh that is updated in place, the ground, points, the camera's path. Knows no widget.
+
+It needs pyvista's plotter interface only, so it stands in an off-screen plotter and in an interactor alike.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+from numpy.typing import ArrayLike, NDArray
+from vtkmodules.vtkCommonMath import vtkMatrix4x4
+from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+
+from app.window.viewport.grid import ground_grid
+from app.window.viewport.lens import Lens
+
+Array = NDArray[np.float64]
+CLAY = (214, 202, 186)
+
+
+class Scene:
+    """What is seen in 3D. Every change marks the scene; drawing is the host's business."""
+
+    def __init__(self, plotter: Any) -> None:
+        self.plotter = plotter
+        self._mesh: pv.PolyData | None = None
+        self._shadow: pv.PolyData | None = None
+        self._ground_height = 0.0
+        self._actors: dict[str, Any] = {}
+        self._shown: dict[str, bool] = {}
+        self.extent = np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]])
+        window = plotter.render_window
+        window.SetMultiSamples(0)
+        plotter.renderer.SetUseDepthPeeling(False)
+        plotter.renderer.SetBackgroundAlpha(0.0)
+        plotter.renderer.SetBackground(0.0, 0.0, 0.0)
+        plotter.renderer.camera_set = True
+        self._light()
+
+    def _light(self) -> None:
+        self.plotter.remove_all_lights()
+        for place, strength, colour in (
+            ((-0.9, 1.3, 1.4), 0.78, "#FFF4E4"),
+            ((1.4, 0.4, 0.9), 0.34, "#DCE8FF"),
+            ((0.2, 0.9, -1.6), 0.40, "#FFFFFF"),
+        ):
+            light = pv.Light(position=place, focal_point=(0, 0, 0), intensity=strength, color=colour)
+            light.set_camera_light()
+            light.positional = False
+            self.plotter.add_light(light)
+
+    def set_mesh(self, vertices: ArrayLike, faces: ArrayLike, colours: NDArray[np.uint8] | None = None) -> None:
+        """Show a mesh: vertices (v, 3), triangles (m, 3), colours (v, 3) where it has them."""
+        self.clear_mesh()
+        corners = np.asarray(faces, np.int64).reshape(-1, 3)
+        cells = np.column_stack([np.full(len(corners), 3), corners]).ravel()
+        mesh = pv.PolyData(np.array(vertices, np.float32), cells)
+        paint = np.tile(np.array(CLAY, np.uint8), (mesh.n_points, 1)) if colours is None else colours
+        mesh.point_data["colour"] = np.ascontiguousarray(paint[:, :3], np.uint8)
+        mesh.set_active_scalars("colour")
+        normals = vtkPolyDataNormals()
+        normals.SetInputData(mesh)
+        for switch in (normals.SplittingOff, normals.ConsistencyOff, normals.AutoOrientNormalsOff):
+            switch()
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputConnection(normals.GetOutputPort())
+        mapper.SetColorModeToDirectScalars()
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        look = actor.GetProperty()
+        look.SetInterpolationToPhong()
+        look.SetAmbient(0.20)
+        look.SetDiffuse(0.85)
+        look.SetSpecular(0.10)
+        look.SetSpecularPower(18.0)
+        self._mesh = mesh
+        self._put("mesh", actor)
+        self._make_shadow(mesh, cells)
+        self.extent = np.array([mesh.points.min(0), mesh.points.max(0)], np.float64)
+
+    def clear_mesh(self) -> None:
+        """Take the mesh away."""
+        self._remove("mesh")
+        self._remove("shadow")
+        self._mesh = self._shadow = None
+
+    def move_mesh(self, vertices: ArrayLike) -> None:
+        """Bring the mesh to other places (v, 3); nothing is made anew."""
+        if self._mesh is None:
+            return
+        places = np.asarray(vertices)
+        self._mesh.points[:] = places
+        self._mesh.GetPoints().GetData().Modified()
+        self._mesh.GetPoints().Modified()
+        self._mesh.Modified()
+        self.extent = np.array([places.min(0), places.max(0)], np.float64)
+        self._move_shadow()
+
+    def paint_mesh(self, colours: NDArray[np.uint8]) -> None:
+        """Give the vertices other colours (v, 3)."""
+        if self._mesh is None:
+            return
+        self._mesh.point_data["colour"][:] = colours
+        self._mesh.GetPointData().GetScalars().Modified()
+        self._mesh.Modified()
+
+    def _make_shadow(self, mesh: pv.PolyData, cells: NDArray[np.int64]) -> None:
+        self._shadow = pv.PolyData(np.array(mesh.points), cells)
+        mapper = vtkPolyDataMapper()
+        mapper.SetInputData(self._shadow)
+        mapper.ScalarVisibilityOff()
+        actor = vtkActor()
+        actor.SetMapper(mapper)
+        actor.GetProperty().LightingOff()
+        actor.GetProperty().SetColor(0.055, 0.065, 0.08)
+        self._put("shadow", actor)
+        self._move_shadow()
+
+    def _move_shadow(self) -> None:
+        if self._shadow is None or self._mesh is None or not self._shown.get("shadow", True):
+            return
+        height = float(np.ptp(self._mesh.points[:, 2])) or 1.0
+        self._shadow.points[:] = self._mesh.points
+        self._shadow.points[:, 2] = self._ground_height + 0.001 * height
+        self._shadow.GetPoints().GetData().Modified()
+        self._shadow.GetPoints().Modified()
+        self._shadow.Modified()
+
+    def set_ground(self, centre: ArrayLike, radius: float, height: float = 0.0) -> None:
+        """Draw a grid on the ground round a place (2,), with the height of the ground."""
+        self._ground_height = height
+        lines = ground_grid(np.asarray(centre, np.float64)[:2], radius, height)
+        self._add("ground", lines, scalars="rgba", rgba=True, lighting=False, line_width=1)
+
+    def set_points(self, points: ArrayLike) -> None:
+        """Show background points (p, 3)."""
+        places = np.asarray(points, np.float32).reshape(-1, 3)
+        self._remove("points")
+        if len(places):
+            self._add("points", pv.PolyData(places), color="#8C96A2", point_size=3.0, lighting=False)
+
+    def set_camera_path(self, centres: ArrayLike) -> None:
+        """Show the way of the camera (n, 3)."""
+        places = np.asarray(centres, np.float64).reshape(-1, 3)
+        self._remove("path")
+        if len(places) > 1:
+            line = pv.lines_from_points(places)
+            self._add("path", line, color="#C39BFF", line_width=2, lighting=False)
+
+    def show(self, name: str, shown: bool) -> None:
+        """Show or hide mesh, shadow, ground, points or path; holds for what comes later under that name too."""
+        self._shown[name] = shown
+        if name in self._actors:
+            self._actors[name].SetVisibility(shown)
+        if name == "shadow" and shown:
+            self._move_shadow()
+
+    def look_through(self, lens: Lens) -> None:
+        """Draw by a lens from now on."""
+        camera = self.plotter.renderer.GetActiveCamera()
+        position, focus, up = lens.pose()
+        camera.SetPosition(*position)
+        camera.SetFocalPoint(*focus)
+        camera.SetViewUp(*up)
+        camera.SetClippingRange(lens.near, lens.far)
+        matrix = vtkMatrix4x4()
+        matrix.DeepCopy(lens.projection().ravel())
+        camera.SetExplicitProjectionTransformMatrix(matrix)
+        camera.SetUseExplicitProjectionTransformMatrix(True)
+
+    def _add(self, name: str, mesh: pv.PolyData, **look: Any) -> None:
+        self._remove(name)
+        actor = self.plotter.add_mesh(mesh, render=False, reset_camera=False, show_scalar_bar=False, **look)
+        self._actors[name] = actor
+        actor.SetVisibility(self._shown.get(name, True))
+
+    def _put(self, name: str, actor: Any) -> None:
+        self._remove(name)
+        self.plotter.renderer.AddActor(actor)
+        self._actors[name] = actor
+        actor.SetVisibility(self._shown.get(name, True))
+
+    def _remove(self, name: str) -> None:
+        actor = self._actors.pop(name, None)
+        if actor is not None:
+            self.plotter.renderer.RemoveActor(actor)
+
+    def clear(self) -> None:
+        """Take everything away, so that nothing outlives its render window."""
+        for name in list(self._actors):
+            self._remove(name)
+        self._mesh = self._shadow = None

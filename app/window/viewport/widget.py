@@ -1,0 +1,321 @@
+"""The 3D view as a widget: a host that draws the scene, and over it a surface with the handles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QPointF, Qt, QTimer, Signal
+from PySide6.QtGui import QCloseEvent, QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.window.canvas.view import View, fitted
+from app.window.viewport.drag import Mode, VertexDrag, VertexReleased
+from app.window.viewport.handles import Handle, paint_handles
+from app.window.viewport.hosts import Choice, choose, make_host
+from app.window.viewport.lens import Lens, clipped, framed
+from app.window.viewport.orbit import Orbit, around, beside
+from app.window.viewport.picking import pick_vertex
+from imitation.geometry import Camera
+
+Looking = Literal["orbit", "camera", "side"]
+IDLE = 250
+AXIS_KEYS: dict[int, Mode] = {Qt.Key.Key_X: "x", Qt.Key.Key_Y: "y", Qt.Key.Key_Z: "z"}
+
+
+class Surface(QWidget):
+    """The transparent layer over the picture."""
+
+    def __init__(self, parent: Viewport) -> None:
+        super().__init__(parent)
+        self.view3d = parent
+        self.setMouseTracking(True)
+        self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw the handles."""
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self.view3d.paint_over(painter)
+        painter.end()
+
+
+class Viewport(QWidget):
+    """Shows a mesh, lets a vertex be chosen and dragged. Events come by ``happened``, with plain values."""
+
+    happened = Signal(object)
+    hovered = Signal(int)
+
+    def __init__(self, choice: Choice = "auto", parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.host: Any = make_host(choose(choice), self)
+        self.scene = self.host.scene
+        self.surface = Surface(self)
+        self.looking: Looking = "orbit"
+        self.orbit = Orbit()
+        self.camera: Camera | None = None
+        self.picture: QImage | None = None
+        self.mesh_opacity = 1.0
+        self.view = View()
+        self._fit = True
+        self.vertices: NDArray[np.float64] = np.zeros((0, 3))
+        self.faces: NDArray[np.int32] = np.zeros((0, 3), np.int32)
+        self.handles: tuple[Handle, ...] = ()
+        self.notes: Sequence[Callable[[QPainter, Lens], None]] = ()
+        self._hover = -1
+        self._drag: VertexDrag | None = None
+        self._turn: tuple[QPointF, bool] | None = None
+        self._idle = QTimer(self)
+        self._idle.setSingleShot(True)
+        self._idle.setInterval(IDLE)
+        self._idle.timeout.connect(self._refine)
+        self._dirty = True
+        self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setMinimumSize(240, 160)
+
+    # what is shown -----------------------------------------------------------------------------------------------
+
+    def show_mesh(
+        self, vertices: NDArray[np.float64], faces: NDArray[np.int32], colours: NDArray[np.uint8] | None
+    ) -> None:
+        """Show another mesh."""
+        self.vertices, self.faces = np.asarray(vertices, np.float64), faces
+        self.scene.set_mesh(vertices, faces, colours)
+        self.redraw()
+
+    def move_mesh(self, vertices: NDArray[np.float64]) -> None:
+        """Bring the mesh to other places."""
+        self.vertices = np.asarray(vertices, np.float64)
+        self.scene.move_mesh(self.vertices)
+        self.redraw()
+
+    def clear_mesh(self) -> None:
+        """Show no mesh."""
+        self.vertices, self.faces = np.zeros((0, 3)), np.zeros((0, 3), np.int32)
+        self.scene.clear_mesh()
+        self.redraw()
+
+    def show_handles(self, handles: Sequence[Handle]) -> None:
+        """Show other handles."""
+        self.handles = tuple(handles)
+        self.surface.update()
+
+    def show_camera(self, camera: Camera | None, picture: QImage | None) -> None:
+        """Take the frame's camera and its picture."""
+        self.camera, self.picture = camera, picture
+        if self.looking == "camera":
+            self.redraw()
+
+    def look(self, looking: Looking) -> None:
+        """Orbit, look through the recovered camera, or look from its side."""
+        self.looking = looking
+        if looking == "side" and self.camera is not None:
+            middle = self.vertices.mean(0) if len(self.vertices) else np.zeros(3)
+            self.orbit = beside(self.camera, middle, around(self._subject(), self.orbit, aspect=self._aspect()))
+        overlaid = looking == "camera" and self.picture is not None
+        self.scene.show("shadow", not overlaid)
+        self.scene.show("path", not overlaid)
+        self.redraw()
+
+    def fit(self) -> None:
+        """Show the whole mesh, or the whole picture."""
+        self._fit = True
+        self.orbit = around(self._subject(), self.orbit, aspect=self._aspect())
+        self.redraw()
+
+    def _subject(self) -> NDArray[np.float64]:
+        return self.vertices if len(self.vertices) else self.scene.extent
+
+    def _aspect(self) -> float:
+        return self.width() / max(self.height(), 1)
+
+    @property
+    def through_camera(self) -> bool:
+        """Whether the picture is seen through the frame's camera."""
+        return self.looking == "camera" and self.camera is not None
+
+    # drawing -----------------------------------------------------------------------------------------------------
+
+    def lens(self) -> Lens:
+        """What is looked through now."""
+        size = (max(self.width(), 2), max(self.height(), 2))
+        if self.through_camera and self.camera is not None:
+            if self._fit and self.picture is not None:
+                self.view = fitted((self.picture.width(), self.picture.height()), size)
+            camera = framed(self.camera, self.view)
+        else:
+            camera = self.orbit.camera(size)
+        return clipped(camera, size, np.concatenate([self.scene.extent, self._corners()]))
+
+    def _corners(self) -> NDArray[np.float64]:
+        low, high = self.scene.extent
+        grid = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
+        return np.asarray(grid, np.float64)
+
+    def redraw(self) -> None:
+        """Draw soon: however many changes come before the next paint, the scene is drawn once."""
+        self._dirty = True
+        self.update()
+        self.surface.update()
+
+    def _draw(self, *, fine: bool) -> None:
+        behind = self.picture if self.through_camera else None
+        self.host.background.show(behind, self.view, mesh_opacity=self.mesh_opacity if behind is not None else 1.0)
+        self.host.draw(self.lens(), fine=fine)
+        self._dirty = False
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw the scene where it has changed, and once more finely when it rests."""
+        if self._dirty:
+            self._draw(fine=False)
+            self._idle.start()
+
+    def _refine(self) -> None:
+        if self.isVisible() and not self._dirty and self._drag is None and self._turn is None:
+            self._draw(fine=True)
+            self.update()
+
+    def paint_over(self, painter: QPainter) -> None:
+        """Draw handles and notes over the picture."""
+        lens = self.lens()
+        paint_handles(painter, lens, self.handles, self._hover)
+        for note in self.notes:
+            note(painter, lens)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep host and surface as large as the view."""
+        self.host.setGeometry(self.rect())
+        self.surface.setGeometry(self.rect())
+        self.redraw()
+
+    # mouse and keys ----------------------------------------------------------------------------------------------
+
+    def vertex_at(self, place: tuple[float, float]) -> int:
+        """The vertex at a widget place: that of a handle first, else the nearest visible one; -1 for none."""
+        camera = self.lens().camera
+        if self.handles:
+            places = camera.project(np.array([handle.place for handle in self.handles]))
+            away = np.hypot(*(places - place).T)
+            away = np.where(np.isfinite(away), away, np.inf)
+            if away.min() <= 10:
+                return self.handles[int(np.argmin(away))].vertex
+        if not len(self.vertices):
+            return -1
+        found = pick_vertex(camera, self.vertices, self.faces, place)
+        return -1 if found is None else found
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Take a vertex, or turn the view."""
+        place = (event.position().x(), event.position().y())
+        keys = event.modifiers()
+        if event.button() == Qt.MouseButton.LeftButton and not keys & Qt.KeyboardModifier.AltModifier:
+            vertex = self.vertex_at(place)
+            if vertex >= 0:
+                mode: Mode = "depth" if keys & Qt.KeyboardModifier.ShiftModifier else "plane"
+                self._drag = VertexDrag(self.lens().camera, vertex, self.vertices[vertex].copy(), mode)
+                self._drag.press(place)
+                return
+        panning = event.button() == Qt.MouseButton.MiddleButton or bool(keys & Qt.KeyboardModifier.ShiftModifier)
+        self._turn = (event.position(), panning)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Go on with the drag or the turn, or say which vertex the mouse is over."""
+        place = (event.position().x(), event.position().y())
+        if self._drag is not None:
+            self._tell(self._drag.move(place))
+        elif self._turn is not None:
+            self._move_view(event.position())
+        elif self.handles:
+            hover = self._handle_near(place)
+            if hover != self._hover:
+                self._hover = hover
+                self.hovered.emit(hover)
+                self.surface.update()
+
+    def _handle_near(self, place: tuple[float, float]) -> int:
+        places = self.lens().to_widget(np.array([handle.place for handle in self.handles]))
+        away = np.nan_to_num(np.hypot(*(places - place).T), nan=np.inf)
+        return self.handles[int(np.argmin(away))].vertex if away.min() <= 10 else -1
+
+    def _move_view(self, position: QPointF) -> None:
+        if self._turn is None:
+            return
+        before, panning = self._turn
+        step = position - before
+        self._turn = (position, panning)
+        if self.through_camera:
+            if panning:
+                self._fit, self.view = False, self.view.panned(step.x(), step.y())
+        elif panning:
+            self.orbit = self.orbit.shifted(step.x(), step.y(), self.height())
+        else:
+            self.orbit = self.orbit.turned(step.x(), step.y())
+        self.redraw()
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """End the drag or the turn."""
+        if self._drag is not None and event.button() == Qt.MouseButton.LeftButton:
+            drag, self._drag = self._drag, None
+            self._tell(drag.release((event.position().x(), event.position().y())))
+        self._turn = None
+        self._idle.start()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Show everything, unless a vertex was meant."""
+        if self.vertex_at((event.position().x(), event.position().y())) < 0:
+            self.fit()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Go nearer or away."""
+        factor = 1.0015 ** event.angleDelta().y()
+        if self.through_camera:
+            self._fit, self.view = False, self.view.zoomed(factor, event.position().x(), event.position().y())
+        else:
+            self.orbit = self.orbit.closer(factor)
+        self.redraw()
+        event.accept()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Give up a drag, or hold it to an axis."""
+        if self._drag is not None and event.key() == Qt.Key.Key_Escape:
+            self.cancel()
+        elif self._drag is not None and event.key() in AXIS_KEYS:
+            mode = AXIS_KEYS[event.key()]
+            self._tell(self._drag.switch("plane" if self._drag.mode == mode else mode))
+        else:
+            super().keyPressEvent(event)
+
+    def cancel(self) -> bool:
+        """Give up the drag under way; says whether there was one."""
+        drag, self._drag = self._drag, None
+        if drag is None:
+            return False
+        self._tell(drag.cancel() or VertexReleased(drag.vertex))
+        return True
+
+    @property
+    def dragging(self) -> bool:
+        """Whether a vertex is held."""
+        return self._drag is not None
+
+    def _tell(self, event: object | None) -> None:
+        if event is not None:
+            self.happened.emit(event)
+
+    # the end -----------------------------------------------------------------------------------------------------
+
+    def finish(self) -> None:
+        """Close the render window; called by the window that closes, and once more by Qt does no harm."""
+        self._idle.stop()
+        self._dirty = False
+        self.host.finish()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """Close the render window with the widget."""
+        self.finish()
+        super().closeEvent(event)
