@@ -1,0 +1,146 @@
+"""What lanes show, as plain values, and where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.window.timeline.axis import LABELS, Axis
+
+RULER = 26
+Style = Literal["solid", "dim", "hatch", "outline"]
+
+
+@dataclass(frozen=True)
+class Bar:
+    """Frames first to last in one colour (a token or a literal)."""
+
+    first: int
+    last: int
+    colour: str
+    style: Style = "solid"
+    text: str = ""
+
+
+@dataclass(frozen=True)
+class Diamond:
+    """A mark in one frame: a click, a key mask, an edited pose."""
+
+    frame: int
+    colour: str = "text"
+    filled: bool = True
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of a lane."""
+
+    id: str
+    bars: tuple[Bar, ...] = ()
+    diamonds: tuple[Diamond, ...] = ()
+    selected: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A value a frame with a limit; NaN breaks the line."""
+
+    values: NDArray[np.float64]
+    limit: float
+    unit: str = "px"
+
+
+@dataclass(frozen=True)
+class Lane:
+    """A titled group of rows, a row of thumbnails, or a curve."""
+
+    id: str
+    title: str
+    icon: str
+    rows: tuple[Row, ...] = ()
+    row_height: int = 10
+    shown_rows: int = 8
+    thumbnails: bool = False
+    curve: Curve | None = None
+    padding: int = 6
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A lane with the place of its rows: (row, top, height) in widget pixels."""
+
+    lane: Lane
+    top: int
+    height: int
+    rows: tuple[tuple[Row, int, int], ...] = ()
+
+
+@dataclass(frozen=True)
+class TimelineHit:
+    """What lies under the mouse: ruler, diamond, bar, row, lane or label, with the lane, the row and the frame."""
+
+    kind: Literal["ruler", "diamond", "bar", "row", "lane", "label"]
+    lane: str
+    row: str
+    frame: int
+
+
+def layout(lanes: Sequence[Lane], scrolled: dict[str, int] | None = None) -> tuple[Placed, ...]:
+    """Stack the lanes under the ruler; a selected row is taller, so that it is easy to hit."""
+    placed, top = [], RULER
+    for lane in lanes:
+        rows, y = [], top + lane.padding
+        first = (scrolled or {}).get(lane.id, 0)
+        shown = lane.rows[first : first + lane.shown_rows]
+        for row in shown:
+            height = lane.row_height + (5 if row.selected and lane.row_height < 14 else 0)
+            rows.append((row, y, height))
+            y += height
+        if lane.thumbnails:
+            y += 38
+        elif lane.curve is not None:
+            y += 34
+        elif not shown:
+            y += lane.row_height
+        bottom = max(y + lane.padding, top + 26)
+        if shown and not lane.thumbnails:
+            spare = (bottom - lane.padding - y) // 2
+            rows = [(row, at + spare, height) for row, at, height in rows]
+        placed.append(Placed(lane, top, bottom - top, tuple(rows)))
+        top = bottom
+    return tuple(placed)
+
+
+def total_height(placed: Sequence[Placed]) -> int:
+    """Pixels that ruler and lanes need."""
+    return placed[-1].top + placed[-1].height + 2 if placed else RULER + 2
+
+
+def hit(placed: Sequence[Placed], axis: Axis, x: float, y: float, reach: float = 7.0) -> TimelineHit | None:
+    """What lies at a widget place; a diamond is found within reach pixels, before the bar under it."""
+    frame = axis.frame(x)
+    if y < RULER:
+        return TimelineHit("ruler", "", "", frame) if x >= LABELS else None
+    for each in placed:
+        if not each.top <= y < each.top + each.height:
+            continue
+        lane = each.lane.id
+        if x < LABELS:
+            row = next((row.id for row, top, height in each.rows if top <= y < top + height), "")
+            return TimelineHit("label", lane, row, frame)
+        for row, top, height in each.rows:
+            slack = 0 if len(each.rows) > 1 else 6
+            if not top - slack <= y < top + height + slack:
+                continue
+            near = min(row.diamonds, key=lambda mark: abs(axis.x(mark.frame) - x), default=None)
+            if near is not None and abs(axis.x(near.frame) - x) <= reach:
+                return TimelineHit("diamond", lane, row.id, near.frame)
+            if any(axis.x(bar.first) - 2 <= x <= axis.x(bar.last) + 2 for bar in row.bars):
+                return TimelineHit("bar", lane, row.id, frame)
+            return TimelineHit("row", lane, row.id, frame)
+        return TimelineHit("lane", lane, "", frame)
+    return None

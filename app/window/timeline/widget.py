@@ -1,0 +1,193 @@
+"""The lanes as a widget: seek by the ruler, choose by click, zoom by the wheel; only the playhead is drawn anew."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPixmap, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.window import theme
+from app.window.timeline import paint
+from app.window.timeline.axis import LABELS, Axis
+from app.window.timeline.lanes import RULER, Lane, Placed, TimelineHit, hit, layout, total_height
+
+
+class LaneView(QWidget):
+    """Ruler and lanes. ``sought`` asks for a frame, ``clicked`` and ``pressed_menu`` say what was hit."""
+
+    sought = Signal(int)
+    clicked = Signal(object)
+    menu_wanted = Signal(object, object)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.axis = Axis()
+        self.frame = 0
+        self.range: tuple[int, int] | None = None
+        self.lanes: tuple[Lane, ...] = ()
+        self.placed: tuple[Placed, ...] = ()
+        self.thumbnail: paint.Thumbnail | None = None
+        self._scrolled: dict[str, int] = {}
+        self._still: QPixmap | None = None
+        self._seeking = False
+        self.still_paints = 0
+        self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+
+    def show_lanes(self, lanes: Sequence[Lane], count: int) -> None:
+        """Show other lanes of a clip of so many frames."""
+        lanes = tuple(lanes)
+        if lanes == self.lanes and count == self.axis.count:
+            return
+        self.lanes = lanes
+        self.axis = self.axis.sized(self.width(), count)
+        self._place()
+
+    def _place(self) -> None:
+        self.placed = layout(self.lanes, self._scrolled)
+        if total_height(self.placed) != self.minimumHeight():
+            self.setMinimumHeight(total_height(self.placed))
+            self.updateGeometry()
+        self.refresh()
+
+    def show_frame(self, frame: int) -> None:
+        """Move the playhead; the lanes are not drawn again unless they have to scroll."""
+        if frame == self.frame:
+            return
+        self.frame = frame
+        axis = self.axis.showing(frame)
+        if axis != self.axis:
+            self._set_axis(axis)
+        self.update()
+
+    def show_range(self, range_: tuple[int, int] | None) -> None:
+        """Show the in and out frames."""
+        if range_ != self.range:
+            self.range = range_
+            self.refresh()
+
+    def refresh(self) -> None:
+        """Draw the lanes anew at the next paint."""
+        self._still = None
+        self.update()
+
+    def _set_axis(self, axis: Axis) -> None:
+        if axis != self.axis:
+            self.axis = axis
+            self.refresh()
+
+    def show_all(self) -> None:
+        """Show the whole clip."""
+        self._set_axis(self.axis.whole())
+
+    def sizeHint(self) -> QSize:
+        """As high as the lanes."""
+        return QSize(800, total_height(self.placed))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fit the axis to the width."""
+        self.axis = self.axis.sized(self.width(), self.axis.count)
+        self.refresh()
+
+    def _find(self, event: QMouseEvent) -> TimelineHit | None:
+        return hit(self.placed, self.axis, event.position().x(), event.position().y())
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Seek by the ruler or an empty place, choose what was hit."""
+        found = self._find(event)
+        if found is None:
+            return
+        if event.button() == Qt.MouseButton.RightButton:
+            self.menu_wanted.emit(found, event.globalPosition().toPoint())
+            return
+        if event.button() != Qt.MouseButton.LeftButton:
+            return
+        self._seeking = found.kind not in ("label", "diamond")
+        if found.kind != "label":
+            self.sought.emit(found.frame)
+        self.clicked.emit(found)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Scrub while the button is down; show that a diamond can be clicked."""
+        if self._seeking:
+            self.sought.emit(self.axis.frame(event.position().x()))
+            return
+        found = self._find(event)
+        hand = found is not None and found.kind in ("diamond", "label")
+        self.setCursor(Qt.CursorShape.PointingHandCursor if hand else Qt.CursorShape.ArrowCursor)
+
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """End scrubbing."""
+        self._seeking = False
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Show the whole clip by a double click on the ruler."""
+        if event.position().y() < RULER:
+            self.show_all()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        """Zoom in time at the mouse; scroll with Shift or sideways; over many tracks scroll their rows."""
+        steps, sideways = event.angleDelta().y(), event.angleDelta().x()
+        x, y = event.position().x(), event.position().y()
+        if sideways or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+            self._set_axis(self.axis.scrolled(-(sideways or steps) / 2))
+        elif x < LABELS:
+            self._scroll_rows(y, -1 if steps > 0 else 1)
+        else:
+            self._set_axis(self.axis.zoomed(1.0015**steps, x))
+        event.accept()
+
+    def _scroll_rows(self, y: float, step: int) -> None:
+        for each in self.placed:
+            lane = each.lane
+            if each.top <= y < each.top + each.height and len(lane.rows) > lane.shown_rows:
+                latest = len(lane.rows) - lane.shown_rows
+                self._scrolled[lane.id] = min(max(self._scrolled.get(lane.id, 0) + step, 0), latest)
+                self._place()
+
+    def show_row(self, lane_id: str, row_id: str) -> None:
+        """Scroll a lane so that a row is seen."""
+        for lane in self.lanes:
+            index = next((number for number, row in enumerate(lane.rows) if row.id == row_id), None)
+            if lane.id != lane_id or index is None:
+                continue
+            first = self._scrolled.get(lane_id, 0)
+            if not first <= index < first + lane.shown_rows:
+                self._scrolled[lane_id] = max(min(index, len(lane.rows) - lane.shown_rows), 0)
+                self._place()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Leave the keys to the window."""
+        event.ignore()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw the kept picture of the lanes and the playhead over it."""
+        ratio = self.devicePixelRatioF()
+        if self._still is None or self._still.size() != self.size() * ratio:
+            self._still = QPixmap(self.size() * ratio)
+            self._still.setDevicePixelRatio(ratio)
+            self._still.fill(theme.active().colour("panel"))
+            painter = QPainter(self._still)
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            paint.paint_lanes(painter, self.axis, self.placed, self.thumbnail)
+            paint.paint_ruler(painter, self.axis)
+            self._paint_range(painter)
+            painter.end()
+            self.still_paints += 1
+        painter = QPainter(self)
+        painter.drawPixmap(0, 0, self._still)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.axis.count > 1:
+            paint.paint_playhead(painter, self.axis, self.frame, min(total_height(self.placed), self.height()))
+        painter.end()
+
+    def _paint_range(self, painter: QPainter) -> None:
+        if self.range is None:
+            return
+        shade = theme.active().colour("canvas", 150)
+        first, last = self.axis.x(self.range[0]), self.axis.x(self.range[1])
+        painter.fillRect(LABELS, RULER, max(int(first) - LABELS, 0), self.height(), shade)
+        painter.fillRect(int(last), RULER, max(self.width() - int(last), 0), self.height(), shade)
