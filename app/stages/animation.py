@@ -1,0 +1,174 @@
+"""Stages of a character: alignment, base solution, animation with edits, comparisons."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from app.model.character import Alignment, Character, PoseEdit, SolveChoice
+from app.model.document import Document
+from app.model.tracks import Track
+from app.stages import scene, tracking
+from app.stages.context import Context
+from app.stages.results import AlignedCharacter, Animation, PlacedContact, World
+from app.stages.stage import Stage
+
+NO_PAIRS = "Pair at least three tracks with vertices of the character first."
+
+
+def alignment(document: Document, character: Character) -> Stage:
+    """The character on the subject in the first frame."""
+    label = f"Placing {character.name}"
+    paired = _paired(document, character)
+    needs = (scene.world(document), *_tracks(document, paired), *_contacts(document, paired))
+    inputs = (character.mesh, _vertices(character, paired), character.alignment)
+    blocked = NO_PAIRS if len(paired) < 3 and character.alignment.fitted else None
+    return Stage(f"alignment/{character.id}", label, _alignment, inputs, needs, blocked=blocked, weight=0.1)
+
+
+def base(document: Document, character: Character) -> Stage:
+    """The character's motion before any edit."""
+    paired = _paired(document, character)
+    mirrors = tuple((track.id, track.mirror) for track in paired if track.mirror and character.solve.symmetry)
+    needs = (
+        scene.world(document),
+        alignment(document, character),
+        *_tracks(document, paired),
+        *_contacts(document, paired),
+    )
+    inputs = (_vertices(character, paired), character.solve.method, character.solve.keep_volume, mirrors)
+    label = f"Moving {character.name}"
+    blocked = NO_PAIRS if len(paired) < 3 else None
+    seconds = 0.05 * (document.clip.frame_count if document.clip else 1)
+    return Stage(f"base/{character.id}", label, _base, inputs, needs, blocked=blocked, weight=seconds)
+
+
+def animation(document: Document, character: Character) -> Stage:
+    """The character's motion with all edits."""
+    edits = tuple(
+        (frame, committed, edit.until)
+        for frame, edit in character.edits.items()
+        if (committed := _counting(edit, set(character.pairs.values())))
+    )
+    following = tuple((vertex, track) for vertex, track in character.following.items())
+    inputs = (character.id, edits, following, character.solve.smooth, character.solve.reach)
+    label = f"Propagating edits of {character.name}" if edits else f"Moving {character.name}"
+    needs = (base(document, character),)
+    return Stage(f"animation/{character.id}", label, _animation, inputs, needs, weight=0.5 + len(edits))
+
+
+def ambiguous(document: Document, character: Character) -> Stage:
+    """Limbs and frames that the video explains in two ways, and the frame where one edit decides."""
+    label = f"Looking for ambiguous limbs of {character.name}"
+    needs = (base(document, character),)
+    return Stage(f"ambiguous/{character.id}", label, _ambiguous, (), needs, weight=3.0)
+
+
+def comparison(document: Document, character: Character, variant: str) -> Stage:
+    """One of the paper's comparisons, from the same edits."""
+    needs = (base(document, character), animation(document, character))
+    name, label = f"compare/{character.id}/{variant}", f"Comparing {character.name} with {variant.replace('_', ' ')}"
+    return Stage(name, label, _comparison, (variant,), needs, weight=2.0)
+
+
+def _paired(document: Document, character: Character) -> list[Track]:
+    return [track for track in document.tracks if track.id in character.pairs]
+
+
+def _vertices(character: Character, paired: list[Track]) -> tuple[tuple[str, int], ...]:
+    return tuple((track.id, character.pairs[track.id]) for track in paired)
+
+
+def _tracks(document: Document, paired: list[Track]) -> tuple[Stage, ...]:
+    return tuple(tracking.track(document, track) for track in paired)
+
+
+def _contacts(document: Document, paired: list[Track]) -> tuple[Stage, ...]:
+    return tuple(scene.contacts(document, track) for track in paired)
+
+
+def _counting(edit: PoseEdit, paired: set[int]) -> tuple[tuple[int, tuple[float, float, float]], ...]:
+    """Give the committed places that count: none without an unmuted move, none of a muted control vertex."""
+    muted = {vertex for vertex, move in edit.moves.items() if move.muted}
+    if len(muted) == len(edit.moves):
+        return ()
+    places = edit.committed or {vertex: move.place for vertex, move in edit.moves.items()}
+    return tuple((vertex, place) for vertex, place in places.items() if vertex not in muted - paired)
+
+
+def _alignment(context: Context, inputs: tuple[Any, Any, Alignment], world: World, *needs: Any) -> AlignedCharacter:
+    from app.stages.placing import place_character
+
+    mesh, paired, choice = inputs
+    tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
+    return place_character(context.media.mesh(mesh), dict(paired), choice, world, tracks, contacts)
+
+
+def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter, *needs: Any) -> Any:
+    from imitation.propagation import solve_base
+
+    paired, method, keep_volume, mirrors = inputs
+    tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
+    names = [name for name, _ in paired]
+    return solve_base(
+        aligned.vertices,
+        aligned.faces,
+        world.cameras,
+        {name: track.positions for name, track in zip(names, tracks, strict=True)},
+        dict(paired),
+        {name: _intervals(placed) for name, placed in zip(names, contacts, strict=True) if placed},
+        method=method,
+        confidence={name: track.confidence for name, track in zip(names, tracks, strict=True)},
+        mirrors=dict(mirrors) or None,
+        deformer=context.media.deformer(aligned, keep_volume),
+        progress=context.progress,
+        on_frame=lambda frame, vertices: context.emit((frame, vertices)),
+    )
+
+
+def _intervals(placed: list[PlacedContact]) -> list[tuple[int, int, Any]]:
+    return [(contact.first, contact.last, contact.place) for contact in placed]
+
+
+def _animation(context: Context, inputs: Any, solved: Any) -> Animation:
+    from imitation.propagation import propagate
+
+    character, edits, following, smooth, reach = inputs
+    if not edits:
+        return Animation(solved.vertices, solved.key_points, solved.keys.names, {})
+    committed: dict[int, Mapping[int, Any]] = {
+        frame: {vertex: np.array(place) for vertex, place in places} for frame, places, _ in edits
+    }
+    last = edits[-1]
+    limits = {frame: (reach.first, reach.last) for frame, _, _ in edits} if reach is not None else None
+    # An earlier result on the same base lends the spans that have not changed; the bits are the same either way.
+    memory = context.media.memory
+    result = propagate(
+        solved,
+        committed,
+        smooth=smooth,
+        follow=dict(following),
+        end=last[2],
+        reach=limits,
+        origin=memory.get(("origin", character)),
+        previous=memory.get(("imitation", character)),
+        deformer=context.media.deformer_of(solved),
+        on_frame=lambda frame, vertices: context.emit((frame, vertices)),
+        progress=context.progress,
+    )
+    memory[("imitation", character)] = result
+    return Animation(result.vertices, result.key_points, result.names, result.report.as_dict())
+
+
+def _ambiguous(context: Context, inputs: tuple[()], solved: Any) -> Any:
+    from imitation.propagation import ambiguous_spans
+
+    return ambiguous_spans(solved, progress=context.progress)
+
+
+def _comparison(context: Context, inputs: tuple[str], solved: Any, animated: Animation) -> Any:
+    from imitation.propagation import compare
+
+    return compare(solved, animated, inputs[0], progress=context.progress)

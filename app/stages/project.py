@@ -1,0 +1,105 @@
+"""All stages of a document, by what they give."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app.model.character import Character
+from app.model.document import Document
+from app.model.tracks import Track
+from app.stages import animation, scene, tracking
+from app.stages.stage import Stage
+
+
+class Stages:
+    """The stages of one version of a document; made once a version, each stage once."""
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self._made: dict[str, Stage | tuple[Stage, ...]] = {}
+
+    @property
+    def flow(self) -> Stage:
+        """Dense optical flow."""
+        return self._once("flow", lambda: tracking.flow(self.document))
+
+    @property
+    def masks(self) -> Stage:
+        """The subject's mask in every frame."""
+        return self._once("masks", lambda: tracking.masks(self.document))
+
+    @property
+    def cameras(self) -> Stage:
+        """The camera path in its own units."""
+        return self._once("cameras", lambda: scene.cameras(self.document))
+
+    @property
+    def world(self) -> Stage:
+        """The camera path with Z up and in metres, as far as they are known."""
+        return self._once("world", lambda: scene.world(self.document))
+
+    def spans(self, track_id: str) -> tuple[Stage, ...]:
+        """The spans of a track."""
+        return tracking.spans(self.document, self._track(track_id))
+
+    def track(self, track_id: str) -> Stage:
+        """A track."""
+        return self._once(f"track/{track_id}", lambda: tracking.track(self.document, self._track(track_id)))
+
+    def contacts(self, track_id: str) -> Stage:
+        """The contacts of a track with their places."""
+        return self._once(f"contacts/{track_id}", lambda: scene.contacts(self.document, self._track(track_id)))
+
+    def alignment(self, character_id: str) -> Stage:
+        """A character on the subject in the first frame."""
+        return self._once(
+            f"alignment/{character_id}", lambda: animation.alignment(self.document, self._character(character_id))
+        )
+
+    def base(self, character_id: str) -> Stage:
+        """A character's motion before any edit."""
+        return self._once(f"base/{character_id}", lambda: animation.base(self.document, self._character(character_id)))
+
+    def animation(self, character_id: str) -> Stage:
+        """A character's motion with all edits."""
+        return self._once(
+            f"animation/{character_id}", lambda: animation.animation(self.document, self._character(character_id))
+        )
+
+    def ambiguous(self, character_id: str) -> Stage:
+        """Limbs and frames that the video explains in two ways."""
+        return self._once(
+            f"ambiguous/{character_id}", lambda: animation.ambiguous(self.document, self._character(character_id))
+        )
+
+    def comparison(self, character_id: str, variant: str) -> Stage:
+        """One of the paper's comparisons."""
+        return self._once(
+            f"compare/{character_id}/{variant}",
+            lambda: animation.comparison(self.document, self._character(character_id), variant),
+        )
+
+    def all(self) -> Iterator[Stage]:
+        """Yield every stage that a person thinks of as a step of the project."""
+        yield self.masks
+        yield self.cameras
+        yield self.world
+        for track in self.document.tracks:
+            yield self.track(track.id)
+        for character in self.document.characters:
+            yield self.alignment(character.id)
+            yield self.base(character.id)
+            yield self.animation(character.id)
+
+    def _track(self, track_id: str) -> Track:
+        return self.document.track(track_id)
+
+    def _character(self, character_id: str) -> Character:
+        return self.document.character(character_id)
+
+    def _once(self, name: str, make: object) -> Stage:
+        if name not in self._made:
+            self._made[name] = make()  # type: ignore[operator]
+        stage = self._made[name]
+        assert isinstance(stage, Stage)
+        return stage

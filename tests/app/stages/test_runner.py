@@ -1,0 +1,198 @@
+"""Stages run once a key, stop when asked, and say why they failed."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.stages.cache import ResultCache
+from app.stages.context import Context
+from app.stages.job import Job, Silent
+from app.stages.media import Media
+from app.stages.runner import Runner
+from app.stages.stage import Stage
+from app.storage.results import ResultStore
+from imitation import InputError
+
+CALLS: list[str] = []
+GATE = threading.Event()
+
+
+def add(context: Context, inputs: tuple[str, int], *needs: int) -> int:
+    """Add a number to the results it needs."""
+    CALLS.append(inputs[0])
+    return inputs[1] + sum(needs)
+
+
+def slow(context: Context, inputs: tuple[float]) -> str:
+    """Take some seconds in small steps."""
+    end = time.monotonic() + inputs[0]
+    while time.monotonic() < end:
+        context.progress(0.5)
+        time.sleep(0.01)
+    return "done"
+
+
+def stream(context: Context, inputs: tuple[int]) -> int:
+    """Hand out parts before the whole."""
+    for part in range(inputs[0]):
+        context.emit(part)
+    return inputs[0]
+
+
+def fail(context: Context, inputs: tuple[str]) -> None:
+    """Refuse."""
+    raise InputError(inputs[0])
+
+
+def number(name: str, value: int, *needs: Stage) -> Stage:
+    """A stage that adds."""
+    return Stage(name, name, add, (name, value), needs)
+
+
+@pytest.fixture
+def runner(tmp_path: Path) -> Iterator[Runner]:
+    """A runner on threads with a store."""
+    CALLS.clear()
+    made = Runner(ResultCache(ResultStore(tmp_path)), Media(lambda media: tmp_path))
+    yield made
+    made.close()
+
+
+def test_needs_run_first_and_each_once(runner: Runner) -> None:
+    """A diamond of stages computes each of them one time."""
+    a = number("a", 1)
+    b, c = number("b", 10, a), number("c", 100, a)
+    assert runner.run("sum", (number("d", 1000, b, c),)) == [1112]
+    assert sorted(CALLS) == ["a", "b", "c", "d"]
+
+
+def test_only_what_changed_is_computed_again(runner: Runner) -> None:
+    """Another input of one stage leaves the results beside it; going back finds the old result."""
+    a, b = number("a", 1), number("b", 2)
+    runner.run("first", (number("sum", 0, a, b),))
+    CALLS.clear()
+    runner.run("second", (number("sum", 0, a, number("b", 3)),))
+    assert CALLS == ["b", "sum"]
+    CALLS.clear()
+    assert runner.run("back", (number("sum", 0, a, b),)) == [3]
+    assert CALLS == []
+
+
+def test_results_are_found_in_the_folder_later(tmp_path: Path) -> None:
+    """A new session finds what an earlier one computed."""
+    CALLS.clear()
+    for _ in range(2):
+        runner = Runner(ResultCache(ResultStore(tmp_path)), Media(lambda media: tmp_path))
+        assert runner.run("a", (number("a", 5),)) == [5]
+        runner.close()
+    assert CALLS == ["a"]
+
+
+def test_states(runner: Runner) -> None:
+    """Missing, fresh, stale after a change, failed with its reason, blocked with what is missing."""
+    a = number("a", 1)
+    assert runner.state(a) == "missing"
+    runner.run("a", (a,))
+    assert runner.state(a) == "fresh"
+    assert runner.state(number("a", 2)) == "stale"
+    bad = Stage("bad", "bad", fail, ("The video is broken.",))
+    with pytest.raises(InputError, match="The video is broken"):
+        runner.run("bad", (bad,))
+    assert runner.state(bad) == "failed"
+    assert runner.why_failed(bad) == "The video is broken."
+    waiting = number("c", 1, Stage("v", "v", add, blocked="Add a video first."))
+    assert runner.state(waiting) == "blocked"
+    with pytest.raises(InputError, match="Add a video first"):
+        runner.run("c", (waiting,))
+
+
+def test_a_failed_stage_can_be_tried_again(runner: Runner) -> None:
+    """A failure is not remembered as a result."""
+    bad = Stage("bad", "bad", fail, ("no",))
+    for _ in range(2):
+        with pytest.raises(InputError):
+            runner.run("bad", (bad,))
+
+
+def test_cancel_is_quick_and_keeps_what_is_done(runner: Runner) -> None:
+    """A cancelled job ends soon; its finished stages stay, and the rest can be started anew."""
+    done = number("done", 1)
+    long = Stage("long", "long", slow, (30.0,), (done,))
+    job = runner.start("long", (long,))
+    deadline = time.monotonic() + 10
+    while runner.state(done) != "fresh" and time.monotonic() < deadline:
+        time.sleep(0.005)
+    job.cancel()
+    assert job.wait(5)
+    assert job.state == "cancelled"
+    assert runner.state(done) == "fresh"
+    assert runner.state(long) == "missing"
+
+
+def test_two_jobs_share_a_stage_and_one_may_leave(runner: Runner) -> None:
+    """Cancelling one of two jobs that wait for a stage does not take it from the other."""
+    shared = Stage("shared", "shared", slow, (0.4,))
+    first, second = runner.start("first", (shared,)), runner.start("second", (shared,))
+    time.sleep(0.05)
+    first.cancel()
+    assert second.wait(10)
+    assert second.state == "done"
+    assert first.state == "cancelled"
+
+
+def test_partial_results_stream(runner: Runner) -> None:
+    """Parts come in order before the whole, progress ends at 1."""
+    heard: list[Any] = []
+
+    class Ear(Silent):
+        def partial(self, job: Job, stage: Stage, value: Any) -> None:
+            heard.append(value)
+
+        def finished(self, job: Job) -> None:
+            heard.append((job.state, job.fraction))
+
+    runner.run("stream", (Stage("s", "s", stream, (3,)),), Ear())
+    assert heard == [0, 1, 2, ("done", 1.0)]
+
+
+def test_stages_run_in_other_processes(tmp_path: Path) -> None:
+    """Any executor with the standard interface will do."""
+    with ProcessPoolExecutor(1) as pool:
+        runner = Runner(ResultCache(ResultStore(tmp_path)), Media(lambda media: tmp_path), pool)
+        assert runner.run("sum", (number("b", 10, number("a", 1)),)) == [11]
+        with pytest.raises(InputError, match="not today"):
+            runner.run("bad", (Stage("bad", "bad", fail, ("not today",)),))
+        runner.close()
+
+
+def test_a_full_disk_costs_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """When results cannot be stored they stay in memory, and the cache says why."""
+
+    def full(self: ResultStore, key: str, value: Any) -> None:
+        raise InputError("The disk is full.")
+
+    monkeypatch.setattr(ResultStore, "save", full)
+    cache = ResultCache(ResultStore(tmp_path))
+    runner = Runner(cache, Media(lambda media: tmp_path))
+    assert runner.run("a", (number("a", 5),)) == [5]
+    assert cache.storing_failed == "The disk is full."
+    runner.close()
+
+
+def test_memory_stays_in_its_budget(tmp_path: Path) -> None:
+    """Old results leave the memory and come back from the folder."""
+    import numpy as np
+
+    cache = ResultCache(ResultStore(tmp_path), budget=20_000)
+    stages = [number(f"s{i}", i) for i in range(10)]
+    for i, stage in enumerate(stages):
+        cache.put(stage, np.full(1000, float(i)))
+    assert cache._bytes <= 20_000
+    assert [cache.get(stage)[0] for stage in stages] == list(range(10))

@@ -1,0 +1,168 @@
+"""Saving and loading change nothing; what cannot be read says why; nothing is lost."""
+
+from __future__ import annotations
+
+import errno
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+
+from app.formats import atomic
+from app.model.document import Document
+from app.model.edits import scene
+from app.storage.folder import ProjectFolder
+from app.storage.migrations import VERSION
+from app.storage.results import ResultStore
+from app.storage.schema import document_from_json, document_to_json
+from imitation import CameraPath, InputError
+from tests.app.strategies import documents, start
+
+
+@given(documents)
+@settings(max_examples=60, deadline=None)
+def test_json_round_trip_is_exact(document: Document) -> None:
+    """Every document reads back equal, and equal documents give equal bytes."""
+    data = document_to_json(document)
+    again = document_from_json(data, "project.json")
+    assert again == document
+    assert document_to_json(again) == data
+
+
+def test_fields_of_a_newer_program_are_kept() -> None:
+    """What this program does not know goes through load and save untouched, at the top and deep inside."""
+    body = json.loads(document_to_json(start()))
+    body["document"]["mood"] = {"tempo": [1, 2.5, None]}
+    body["document"]["clip"]["lens"] = "35 mm"
+    document = document_from_json(json.dumps(body).encode(), "project.json")
+    again = json.loads(document_to_json(document))
+    assert again["document"]["mood"] == {"tempo": [1, 2.5, None]}
+    assert again["document"]["clip"]["lens"] == "35 mm"
+
+
+def test_a_newer_format_is_refused_politely() -> None:
+    """A file of a later version says that the program must be updated."""
+    body = json.loads(document_to_json(Document()))
+    body["version"] = VERSION + 1
+    with pytest.raises(InputError, match="newer Motionwright"):
+        document_from_json(json.dumps(body).encode(), "project.json")
+
+
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        (b"", "not readable"),
+        (b"\xff\xfe", "not readable"),
+        (b"[]", "not a Motionwright project"),
+        (b'{"format": "other", "version": 1}', "not a Motionwright project"),
+        (b'{"format": "motionwright", "version": 1}', "missing field 'document'"),
+        (b'{"format": "motionwright", "version": 1, "document": {"clip": {"width": 3}}}', "damaged"),
+        (b'{"format": "motionwright", "version": 1, "document": {"name": 3}}', "text was expected, not 3"),
+        (b'{"format": "motionwright", "version": 1, "document": {"range": {"first": 5, "last": 2}}}', "no interval"),
+    ],
+)
+def test_damaged_files_say_so(data: bytes, reason: str) -> None:
+    """A damaged project gives one sentence, never a traceback."""
+    with pytest.raises(InputError, match=reason) as refusal:
+        document_from_json(data, "project.json")
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_project_that_exists_is_not_overwritten(tmp_path: Path) -> None:
+    """Creating where a project lies is refused."""
+    ProjectFolder.create(tmp_path / "film", Document())
+    with pytest.raises(InputError, match="project already"):
+        ProjectFolder.create(tmp_path / "film", Document())
+
+
+def test_a_full_disk_leaves_the_saved_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """When the disk is full, saving says so and the earlier file stays whole."""
+    folder = ProjectFolder.create(tmp_path / "film", Document())
+    before = folder.file.read_bytes()
+
+    def full(descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(atomic.os, "fsync", full)
+    with pytest.raises(InputError, match="disk is full"):
+        folder.save(start())
+    assert folder.file.read_bytes() == before
+    assert [path.name for path in folder.path.iterdir()] == ["project.json"]
+
+
+def test_autosave_is_offered_until_saved(tmp_path: Path) -> None:
+    """Unsaved work comes back after a crash; after saving there is nothing to recover."""
+    folder = ProjectFolder.create(tmp_path / "film", Document())
+    changed = scene.rename(Document(), "changed").document
+    folder.autosave(changed)
+    assert folder.recoverable() == changed
+    folder.save(changed)
+    assert folder.recoverable() is None
+
+
+def test_a_damaged_autosave_is_no_obstacle(tmp_path: Path) -> None:
+    """A half-written autosave is not offered, and the project opens."""
+    folder = ProjectFolder.create(tmp_path / "film", Document())
+    folder.autosave_file.write_bytes(b"{")
+    assert folder.recoverable() is None
+    assert folder.load() == Document()
+
+
+def test_media_are_copied_once_and_found_after_a_move(tmp_path: Path) -> None:
+    """Copies with one content are one file; another file of the same name is another; a moved project finds both."""
+    folder = ProjectFolder.create(tmp_path / "film", Document())
+    source = tmp_path / "clip.bin"
+    source.write_bytes(b"one")
+    first, again = folder.copy_in(source), folder.copy_in(source)
+    source.write_bytes(b"two")
+    second = folder.copy_in(source)
+    assert first == again
+    assert first.path != second.path
+    linked = folder.link(source)
+    moved = tmp_path / "elsewhere"
+    moved.mkdir()
+    folder.path.rename(moved / folder.path.name)
+    source.rename(moved / source.name)
+    folder = ProjectFolder.find(moved / "film")
+    assert folder.locate(first).read_bytes() == b"one"
+    assert folder.locate(second).read_bytes() == b"two"
+    assert folder.locate(linked) == moved / "clip.bin"
+
+
+def test_missing_media_are_named(tmp_path: Path) -> None:
+    """A medium that is gone is named with the place where it was expected."""
+    folder = ProjectFolder.create(tmp_path / "film", Document())
+    source = tmp_path / "clip.bin"
+    source.write_bytes(b"one")
+    media = folder.link(source)
+    source.unlink()
+    with pytest.raises(InputError, match=r"clip\.bin is missing"):
+        folder.locate(media)
+
+
+def test_results_come_back_with_the_same_bits(tmp_path: Path) -> None:
+    """Nested results of arrays and engine types survive the disk bit by bit."""
+    rng = np.random.default_rng(1)
+    path = CameraPath(np.tile(np.eye(3), (4, 1, 1)), np.tile(np.eye(3), (4, 1, 1)), rng.normal(size=(4, 3)), "static")
+    value = {"path": path, 3: (rng.normal(size=5), None, 0.1 + 0.2, float("nan"), "words"), "list": [True, 7]}
+    store = ResultStore(tmp_path)
+    store.save("ab" * 16, value)
+    again = store.load("ab" * 16)
+    assert np.array_equal(again["path"].T, path.T)
+    assert again["path"].verdict == "static"
+    assert np.array_equal(again[3][0], value[3][0])
+    assert again[3][1:3] == (None, 0.1 + 0.2)
+    assert np.isnan(again[3][3])
+    assert again["list"] == [True, 7]
+
+
+def test_a_result_of_foreign_code_is_not_run(tmp_path: Path) -> None:
+    """A results folder from a stranger can name no class outside the program."""
+    store = ResultStore(tmp_path)
+    store.save("ab" * 16, {"a": 1})
+    file = tmp_path / "ab" / ("ab" * 16) / "value.json"
+    file.write_text(json.dumps({"class": "subprocess:Popen", "fields": {"args": "true"}}))
+    with pytest.raises(KeyError):
+        store.load("ab" * 16)

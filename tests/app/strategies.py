@@ -1,0 +1,98 @@
+"""Random documents and random edits: what a person might do, in any order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from hypothesis import strategies as st
+
+from app.model.document import Document
+from app.model.edits import Edit, characters, contacts, poses, scene, tracks
+from app.model.values import Clip, MediaRef, ModelError
+
+CLIP = Clip(MediaRef("media/clip.mp4", "c0ffee", linked=False), 320, 180, 30, 25.0)
+EditMaker = Callable[[Document], Edit]
+
+frames = st.integers(0, CLIP.frame_count - 1)
+pixels = st.tuples(st.floats(0, 319, width=32), st.floats(0, 179, width=32))
+places = st.tuples(*[st.floats(-5, 5)] * 3)
+vertices = st.integers(0, 50)
+
+
+def start() -> Document:
+    """A document with a clip."""
+    return scene.set_clip(Document(), CLIP).document
+
+
+@st.composite
+def edit_makers(draw: st.DrawFn) -> EditMaker:
+    """One edit of any kind; it may not fit the document, then it raises ``ModelError``."""
+    frame, other, pixel, place, vertex = draw(frames), draw(frames), draw(pixels), draw(places), draw(vertices)
+    number, flag = draw(st.integers(0, 20)), draw(st.booleans())
+
+    def track(document: Document) -> str:
+        if not document.tracks:
+            raise ModelError("no track")
+        return document.tracks[number % len(document.tracks)].id
+
+    def character(document: Document) -> str:
+        if not document.characters:
+            raise ModelError("no character")
+        return document.characters[number % len(document.characters)].id
+
+    mesh = MediaRef(f"{number}.ply", f"{number:x}")
+    triangle = [(1.0, 2.0), (30.0, 2.0), pixel]
+    makers: list[EditMaker] = [
+        lambda d: tracks.add_track(d, frame, pixel, name="paw" if flag else ""),
+        lambda d: tracks.add_track(d, frame, pixel),
+        lambda d: tracks.set_click(d, track(d), frame, pixel),
+        lambda d: tracks.remove_click(d, track(d), frame),
+        lambda d: tracks.delete_track(d, track(d)),
+        lambda d: tracks.end_track(d, track(d), frame),
+        lambda d: tracks.restart_track(d, track(d), frame, pixel),
+        lambda d: tracks.set_occluded(d, track(d), frame, other, flag),
+        lambda d: tracks.rename_track(d, track(d), f"name {number}"),
+        lambda d: tracks.set_track_mode(d, track(d), "paper" if flag else "robust"),
+        lambda d: tracks.set_track_masked(d, track(d), flag),
+        lambda d: tracks.set_track_look(d, track(d), colour=number, visible=flag),
+        lambda d: tracks.set_mirror(d, track(d), d.tracks[0].id if flag else None),
+        lambda d: contacts.add_contact(d, track(d), frame, other, accepted=flag),
+        lambda d: contacts.trim_contact(d, track(d), frame, frame, other),
+        lambda d: contacts.place_contact(d, track(d), frame, place if flag else None),
+        lambda d: contacts.remove_contact(d, track(d), frame),
+        lambda d: scene.add_lasso(d, frame, triangle, subtract=flag),
+        lambda d: scene.move_lasso_point(d, frame, 0, 1, pixel),
+        lambda d: scene.remove_mask(d, frame),
+        lambda d: scene.set_range(d, frame, other),
+        lambda d: scene.set_camera(d, "static" if flag else "solve", focal=100.0 + number),
+        lambda d: scene.set_ground(d, "depth" if flag else "plane", depth_track=track(d) if flag else None),
+        lambda d: scene.rename(d, f"film {number}"),
+        lambda d: characters.add_character(d, mesh, name="cat"),
+        lambda d: characters.delete_character(d, character(d)),
+        lambda d: characters.set_pair(d, character(d), track(d), vertex),
+        lambda d: characters.remove_pair(d, character(d), track(d)),
+        lambda d: characters.set_alignment(d, character(d), scale=0.5 + number, translation=place),
+        lambda d: characters.set_solve(d, character(d), smooth=flag, reach=(frame, other)),
+        lambda d: poses.move_vertices(d, character(d), frame, {vertex: place}, {vertex: place, vertex + 1: place}),
+        lambda d: poses.mute_move(d, character(d), frame, vertex, flag),
+        lambda d: poses.delete_move(d, character(d), frame, vertex),
+        lambda d: poses.delete_edit(d, character(d), frame),
+        lambda d: poses.delete_control_vertex(d, character(d), vertex),
+        lambda d: poses.follow_track(d, character(d), vertex, track(d) if flag else None),
+        lambda d: poses.set_edit_end(d, character(d), frame, other),
+    ]
+    return draw(st.sampled_from(makers))
+
+
+def grown(makers: list[EditMaker]) -> Document:
+    """A document after these edits, without those that do not fit."""
+    document = start()
+    for maker in makers:
+        try:
+            document = maker(document).document
+        except ModelError:
+            continue
+    return document
+
+
+documents = st.lists(edit_makers(), max_size=40).map(grown)
