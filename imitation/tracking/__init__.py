@@ -1,1 +1,24 @@
-"""Interactive point tracking (paper A, appendix) and subject masks."""
+"""Interactive point tracking (paper A, Appendix), dense flow, and masks carried through a clip."""
+
+from imitation.tracking.clip import PreparedClip, prepare_clip
+from imitation.tracking.flow import FlowField, compute_flow
+from imitation.tracking.paper import PaperOptions
+from imitation.tracking.point import track_point, track_span
+from imitation.tracking.robust import RobustOptions
+from imitation.tracking.track import Span, SpanPlan, Track, assemble_track, plan_spans
+
+__all__ = [
+    "FlowField",
+    "PaperOptions",
+    "PreparedClip",
+    "RobustOptions",
+    "Span",
+    "SpanPlan",
+    "Track",
+    "assemble_track",
+    "compute_flow",
+    "plan_spans",
+    "prepare_clip",
+    "track_point",
+    "track_span",
+]

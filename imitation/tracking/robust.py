@@ -1,0 +1,174 @@
+"""Robust mode: many guesses of the path, joined by the chain that agrees best with flow and appearance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import attrs
+import numpy as np
+
+from imitation.progress import Progress, part
+from imitation.tracking.chain import Array, Chain, Place
+from imitation.tracking.clip import PreparedClip
+
+
+@attrs.frozen
+class RobustOptions:
+    """Settings of the robust mode; the defaults were found on real clips and are what ``track_point`` uses.
+
+    Attributes
+    ----------
+    window : side of the template, pixels (odd).
+    tolerance : disagreement with the flow that is cheap, pixels a frame.
+    look_alikes : peaks of window correlation taken per template and search centre; 0 leaves the search out.
+    reach : greatest radius of that search, pixels; it is 10 + 3 * (frames to the nearer click) below.
+    local_window : side of the window of local motion, pixels (odd).
+    """
+
+    window: int = 31
+    tolerance: float = 6.0
+    look_alikes: int = 5
+    reach: float = 50.0
+    local_window: int = 21
+
+
+def _follow_local(clip: PreparedClip, order: Sequence[int], start: Place, half: int, report: Progress) -> Array:
+    from imitation.tracking.kernels import local_motion
+
+    path = np.empty((len(order), 2))
+    path[0] = start
+    for i in range(1, len(order)):
+        path[i] = local_motion(clip.greys(order[i - 1]), clip.greys(order[i]), path[i - 1, 0], path[i - 1, 1], half, 20)
+        report(i / len(order))
+    return path
+
+
+def _follow_flow(clip: PreparedClip, order: Sequence[int], start: Place, report: Progress) -> Array:
+    from imitation.tracking.kernels import HALF_TO_FLOAT, flow_at
+
+    path = np.empty((len(order), 2))
+    path[0] = start
+    for i in range(1, len(order)):
+        x, y = path[i - 1]
+        bits = clip.flow(order[i - 1], order[i])
+        u, v = flow_at(bits, HALF_TO_FLOAT, clip.scale, x, y, clip.mask(order[i - 1]))
+        path[i] = x + u, y + v
+        report(i / len(order))
+    return path
+
+
+def _guesses(
+    clip: PreparedClip, order: Sequence[int], start: Place, stop: Place | None, half: int, report: Progress
+) -> tuple[Array, Array]:
+    """Guessed paths (m, p, 2) from the clicks, and the centres (m, c, 2) around which look-alikes are sought."""
+    t = np.linspace(0, 1, len(order))[:, None]
+    backwards = order[::-1]
+    sources = [part(report, a / 4, (a + 1) / 4) for a in range(4)]
+    ahead = [_follow_local(clip, order, start, half, sources[0])]
+    if not clip.preview:
+        ahead.append(_follow_flow(clip, order, start, sources[1]))
+    if stop is None:
+        return np.stack(ahead, axis=1), np.stack(ahead, axis=1)
+    back = [_follow_local(clip, backwards, stop, half, sources[2])[::-1]]
+    if not clip.preview:
+        back.append(_follow_flow(clip, backwards, stop, sources[3])[::-1])
+    paths = []
+    for forward, backward in zip(ahead, back, strict=True):
+        paths += [forward, backward, (1 - t) * forward + t * backward]
+    line = (1 - t) * np.array(start) + t * np.array(stop)
+    centres = [line, paths[2]]
+    paths.append(line)
+    for forward, backward in zip(ahead, back, strict=True):
+        # A drift that grows evenly is the share of the miss at the other click.
+        paths += [forward + t * (np.array(stop) - forward[-1]), backward + (1 - t) * (np.array(start) - backward[0])]
+    return np.stack(paths, axis=1), np.stack(centres, axis=1)
+
+
+class _Appearance:
+    """Templates of the clicks at full size and a quarter of it."""
+
+    def __init__(self, clip: PreparedClip, frame: int, place: Place, half: int) -> None:
+        from imitation.tracking.robust_kernels import make_template
+
+        levels = clip.colours(frame)
+        self.fine, self.norm = make_template(levels[0], place[0], place[1], half)
+        coarse_half = max(2, round(half / 4))
+        self.coarse, self.coarse_norm = make_template(levels[2], place[0] / 4, place[1] / 4, coarse_half)
+
+
+def solve_robust(
+    clip: PreparedClip,
+    order: Sequence[int],
+    start: Place,
+    stop: Place | None,
+    options: RobustOptions,
+    progress: Progress | None,
+) -> Chain:
+    """Solve one run of neighbouring frames, ``order``, from a click in its first to a click in its last (or open).
+
+    Candidates of a frame are the guessed paths and the look-alikes of the clicks; dynamic programming picks the
+    chain of least cost: appearance against both clicks, and disagreement of each step with the flow both ways.
+    """
+    from imitation.tracking.kernels import HALF_TO_FLOAT
+    from imitation.tracking.robust_kernels import cheapest_chain, describe, flows_at, search
+
+    half = options.window // 2
+    paths, centres = _guesses(clip, order, start, stop, options.local_window // 2, part(progress, 0.0, 0.4))
+    frames, guesses = paths.shape[:2]
+    left = _Appearance(clip, order[0], start, half)
+    right = left if stop is None else _Appearance(clip, order[-1], stop, half)
+    searching = options.look_alikes > 0 and not clip.preview
+    templates = [left] if stop is None else [left, right]
+    most = guesses + (options.look_alikes * len(templates) * centres.shape[1] if searching else 0)
+    places, counts = np.zeros((frames, most, 2)), np.ones(frames, np.int64)
+    facts, ahead, back = np.zeros((frames, most, 3)), np.zeros((frames, most, 2)), np.zeros((frames, most, 2))
+    report = part(progress, 0.4, 1.0)
+    for i, frame in enumerate(order):
+        levels, mask = clip.colours(frame), clip.mask(frame)
+        if i == 0 or (i == frames - 1 and stop is not None):
+            places[i, 0] = start if i == 0 or stop is None else stop
+        else:
+            places[i, :guesses] = paths[i]
+            count, gap = guesses, i if stop is None else min(i, frames - 1 - i)
+            if searching:
+                radius = min(10.0 + 3 * gap, options.reach)
+                for x, y in centres[i]:
+                    for t in templates:
+                        count = search(
+                            levels[0], levels[2], 4, x, y, radius, t.fine, t.norm, t.coarse, t.coarse_norm,
+                            options.look_alikes, places[i], count,
+                        )  # fmt: skip
+            counts[i] = count
+        weight = 1.0 if stop is None else (frames - 1 - i) / (frames - 1)
+        describe(
+            levels[0], places[i], counts[i], left.fine, left.norm, right.fine, right.norm, weight, half, mask, facts[i]
+        )
+        for other, out in ((i + 1, ahead), (i - 1, back)):
+            if 0 <= other < frames and not clip.preview:
+                bits = clip.flow(frame, order[other])
+                flows_at(bits, HALF_TO_FLOAT, clip.scale, places[i], counts[i], mask, out[i])
+            elif 0 <= other < frames:
+                _local_flows(clip, frame, order[other], places[i], counts[i], options, out[i])
+        report((i + 1) / frames)
+    data = np.ascontiguousarray(facts[:, :, 0])
+    data[0] = 0
+    chain, steps, margin = cheapest_chain(places, counts, data, ahead, back, options.tolerance**2)
+    rows = np.arange(frames)
+    chosen, turned = facts[rows, chain], back[rows, chain]
+    positions = places[rows, chain]
+    gap_of = np.zeros(frames)
+    gap_of[1:] = np.hypot(*(ahead[rows[:-1], chain[:-1]] + turned[1:]).T)
+    match = np.maximum(chosen[:, 1], chosen[:, 2])
+    return Chain(positions, steps, match, gap_of, margin)
+
+
+def _local_flows(
+    clip: PreparedClip, frame: int, other: int, places: Array, count: int, options: RobustOptions, out: Array
+) -> None:
+    from imitation.tracking.kernels import local_motion
+
+    first, second, half = clip.greys(frame), clip.greys(other), options.local_window // 2
+    for k in range(count):
+        x, y = places[k]
+        tx, ty = local_motion(first, second, x, y, half, 10)
+        out[k] = tx - x, ty - y
