@@ -63,7 +63,9 @@ def test_a_correction_changes_only_the_spans_beside_it(world, mode):
     added = track_point(clip, clicks | {12: (path[12, 0] + 4, path[12, 1])}, mode=mode)
     for other, kept in ((moved, [*range(6), *range(15, 21)]), (removed, [*range(6), *range(15, 21)])):
         for name in ("positions", "confidence", "state", "cost"):
-            assert np.array_equal(getattr(before, name)[kept], getattr(other, name)[kept]), name
+            # The cost of the step into a click's frame belongs to the span before it.
+            rows = [t for t in kept if t != 15] if name == "cost" else kept
+            assert np.array_equal(getattr(before, name)[rows], getattr(other, name)[rows]), name
     assert np.array_equal(before.positions[:11], added.positions[:11])
     assert np.array_equal(before.positions[15:], added.positions[15:])
     assert not np.array_equal(before.positions[6:10], moved.positions[6:10])
@@ -153,8 +155,8 @@ def test_refuses_other_bad_input(world):
         ({"mask": [np.zeros((5, 5), bool)] * 21}, "size of the frames"),
         ({"mask": [np.zeros((200, 320), bool)] * 3}, "one mask a frame"),
         ({"flow": compute_flow(frames[:3])}, "another clip"),
-        (dict(flow="fast"), '"fast"'),
-        (dict(mode="magic"), '"magic"'),
+        ({"flow": "fast"}, '"fast"'),
+        ({"mode": "magic"}, '"magic"'),
         ({"absent": [(2, 4)]}, "absent"),
         ({"absent": [(4, 2)]}, "comes after"),
     ]
