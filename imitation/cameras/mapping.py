@@ -1,0 +1,196 @@
+"""Poses and points of key frames by incremental mapping (pycolmap), in a temporary folder.
+
+Pixel centres: pycolmap puts the centre of the top-left pixel at (0.5, 0.5); shifted here, both ways.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.cameras.features import Features, Matches
+from imitation.geometry.projection import Array
+from imitation.progress import Progress, silent
+
+GUESS = 1.2  # focal length over the longest side where nothing is known, as the mapper's own default
+CENTRE = 0.5
+
+
+@attrs.frozen(eq=False)
+class Model:
+    """Some frames' poses and the points they see, in pixels of the working size.
+
+    Attributes
+    ----------
+    focal : pixels.
+    poses : frame -> (R (3, 3), T (3,)), world to camera.
+    points : (p, 3), world.
+    frames, index, pixels : (m,), (m,), (m, 2): in which frame which point is seen where.
+    """
+
+    focal: float
+    poses: dict[int, tuple[Array, Array]]
+    points: Array
+    frames: NDArray[np.int64]
+    index: NDArray[np.int64]
+    pixels: Array
+
+
+def _database(
+    pycolmap: Any,
+    path: Path,
+    features: Sequence[Features],
+    matches: Mapping[tuple[int, int], Matches],
+    size: tuple[int, int],
+    focal: float | None,
+    tick: Callable[[float], None],
+) -> None:
+    camera = pycolmap.Camera.create_from_model_name(1, "SIMPLE_PINHOLE", focal or GUESS * max(size), *size)
+    camera.has_prior_focal_length = focal is not None
+    options = pycolmap.TwoViewGeometryOptions()
+    options.ransac.random_seed = 0
+    options.ransac.max_error = 3.0
+    database = pycolmap.Database.open(path)
+    try:
+        database.write_camera(camera, True)
+        rig = pycolmap.Rig(rig_id=1)
+        rig.add_ref_sensor(camera.sensor_id)
+        database.write_rig(rig, True)
+        for number, found in enumerate(features, start=1):
+            image = pycolmap.Image(name=f"{found.frame:06d}", camera_id=1, image_id=number)
+            database.write_image(image, True)
+            frame = pycolmap.Frame(frame_id=number, rig_id=1)
+            frame.add_data_id(image.data_id)
+            database.write_frame(frame, True)
+            database.write_keypoints(number, (found.pixels + CENTRE).astype(np.float32))
+        for done, ((i, j), pair) in enumerate(matches.items()):
+            tick(done / len(matches))
+            if len(pair) < options.min_num_inliers:
+                continue
+            first, second = features[i].pixels + CENTRE, features[j].pixels + CENTRE
+            verified = pycolmap.estimate_two_view_geometry(
+                camera, first, camera, second, pair.astype(np.uint32), options
+            )
+            database.write_matches(i + 1, j + 1, pair.astype(np.uint32))
+            database.write_two_view_geometry(i + 1, j + 1, verified)
+    finally:
+        database.close()
+
+
+def _options(pycolmap: Any, focal: float | None) -> Any:
+    options = pycolmap.IncrementalPipelineOptions()
+    options.num_threads = 1
+    options.random_seed = 0
+    options.extract_colors = False
+    options.min_model_size = 3
+    options.max_num_models = 5
+    options.init_num_trials = 60
+    options.ba_global_frames_ratio = 1.3
+    options.ba_global_points_ratio = 1.3
+    options.ba_global_max_refinements = 2
+    if focal is not None:
+        options.ba_refine_focal_length = False
+        options.mapper.abs_pose_refine_focal_length = False
+    return options
+
+
+def _read(best: Any) -> Model:
+    camera = next(iter(best.cameras.values()))
+    names = {number: int(image.name) for number, image in best.images.items() if image.has_pose}
+    poses = {}
+    for number, frame in sorted(names.items()):
+        matrix = best.images[number].cam_from_world().matrix()
+        poses[frame] = (np.array(matrix[:, :3]), np.array(matrix[:, 3]))
+    points, frames, index, pixels = [], [], [], []
+    for place, identity in enumerate(sorted(best.points3D)):
+        point = best.points3D[identity]
+        points.append(np.array(point.xyz))
+        for element in sorted(point.track.elements, key=lambda e: (e.image_id, e.point2D_idx)):
+            frames.append(names[element.image_id])
+            index.append(place)
+            pixels.append(best.images[element.image_id].points2D[element.point2D_idx].xy - CENTRE)
+    return Model(
+        float(camera.params[0]),
+        poses,
+        np.array(points).reshape(-1, 3),
+        np.array(frames, np.int64),
+        np.array(index, np.int64),
+        np.array(pixels).reshape(-1, 2),
+    )
+
+
+def map_key_frames(
+    features: Sequence[Features],
+    matches: Mapping[tuple[int, int], Matches],
+    size: tuple[int, int],
+    *,
+    focal: float | None = None,
+    progress: Progress | None = None,
+) -> Model | None:
+    """Poses of key frames and their points; None where the mapper finds no model.
+
+    Of several models the one with most frames is taken. The mapper runs in a thread of its own with one thread of
+    work and a fixed seed; it stops between two images, which may take longer than ``progress`` asks for.
+    """
+    import pycolmap
+
+    report = progress or silent
+    before = pycolmap.logging.minloglevel
+    pycolmap.logging.minloglevel = 3
+    try:
+        with tempfile.TemporaryDirectory(prefix="cameras-", ignore_cleanup_errors=True) as name:
+            folder = Path(name)
+            (folder / "models").mkdir()
+            _database(pycolmap, folder / "features.db", features, matches, size, focal, lambda part: report(0.4 * part))
+            models = _run(pycolmap, folder, _options(pycolmap, focal), len(features), report)
+    finally:
+        pycolmap.logging.minloglevel = before
+    if not models:
+        return None
+    best = max(sorted(models.items()), key=lambda item: (item[1].num_reg_images(), item[1].num_points3D(), -item[0]))
+    return _read(best[1])
+
+
+def _run(pycolmap: Any, folder: Path, options: Any, count: int, report: Progress) -> dict[int, Any]:
+    """Run the mapper in a thread so that the caller's progress is asked every tenth of a second."""
+    token = pycolmap.CancellationToken()
+    result: dict[str, Any] = {}
+    registered = [0]
+
+    def registered_one() -> None:
+        registered[0] += 1
+
+    def work() -> None:
+        try:
+            result["models"] = pycolmap.incremental_mapping(
+                folder / "features.db",
+                folder,
+                folder / "models",
+                options,
+                next_image_callback=registered_one,
+                cancellation_token=token,
+            )
+        except Exception as error:  # noqa: BLE001 - handed to the caller's thread below
+            result["error"] = error
+
+    thread = threading.Thread(target=work, name="camera mapping", daemon=True)
+    thread.start()
+    try:
+        while thread.is_alive():
+            thread.join(0.1)
+            report(0.4 + 0.6 * min(1.0, registered[0] / count))
+    except BaseException:
+        token.cancel()
+        thread.join()
+        raise
+    if "error" in result:
+        raise result["error"]
+    models: dict[int, Any] = result["models"]
+    return models
