@@ -4,7 +4,7 @@ from imitation.motion.anchors import anchor_depths
 from imitation.motion.contacts import Contact
 from imitation.motion.keys import KeyTracks, key_tracks
 from imitation.motion.lifting import Lift, LiftSettings, lift_tracks
-from imitation.motion.polish import pixel_noise, polish
+from imitation.motion.polishing import pixel_noise, polish
 from imitation.motion.smoothing import smooth_depths
 from imitation.motion.transfer import transfer_track
 

@@ -17,7 +17,7 @@ from imitation.motion.banded import Array
 from imitation.motion.contacts import Contact
 from imitation.motion.keys import KeyTracks, key_tracks, rays_of
 from imitation.motion.lifting import LiftSettings, lift_tracks
-from imitation.motion.polish import pixel_noise, polish
+from imitation.motion.polishing import pixel_noise, polish
 from imitation.motion.smoothing import smooth_depths
 from imitation.progress import Progress, part
 
