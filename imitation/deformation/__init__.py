@@ -1,1 +1,7 @@
 """Detail-preserving deformation (paper A, 3.4)."""
+
+from imitation.deformation.constraints import FrameConstraints
+from imitation.deformation.deformer import Deformer
+from imitation.deformation.pose import Pose
+
+__all__ = ["Deformer", "FrameConstraints", "Pose"]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -12,7 +10,7 @@ from imitation.geometry.measures import unique_edges
 from imitation.geometry.prepare import check_mesh, prepare_mesh
 
 
-def geodesic_regions(vertices: ArrayLike, faces: ArrayLike, key_vertices: Sequence[int]) -> NDArray[np.int64]:
+def geodesic_regions(vertices: ArrayLike, faces: ArrayLike, key_vertices: ArrayLike) -> NDArray[np.int64]:
     """For each vertex (n,) the position in ``key_vertices`` of the key that is nearest along the edges of the mesh.
 
     Separate parts count as joined where they come nearest (see ``prepare_mesh``). Ties go to the smaller position.
@@ -43,7 +41,7 @@ def geodesic_regions(vertices: ArrayLike, faces: ArrayLike, key_vertices: Sequen
     return nearest
 
 
-def key_adjacency(vertices: ArrayLike, faces: ArrayLike, key_vertices: Sequence[int]) -> NDArray[np.int64]:
+def key_adjacency(vertices: ArrayLike, faces: ArrayLike, key_vertices: ArrayLike) -> NDArray[np.int64]:
     """Pairs (p, 2) of positions in ``key_vertices`` whose geodesic regions touch, smaller first, sorted.
 
     These are the pairs whose distance a moving body roughly keeps.

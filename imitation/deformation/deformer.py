@@ -1,0 +1,223 @@
+"""Detail-preserving deformation of one mesh by points and rays (paper A, 3.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from imitation.deformation.constraints import FrameConstraints, Rows, build_rows
+from imitation.deformation.pose import Pose
+from imitation.deformation.start import FAR, first_motion, rigid_fit, warp
+from imitation.errors import InputError
+from imitation.geometry import Camera, kabsch, prepare_mesh, quaternion_of, quaternion_product
+from imitation.geometry.projection import Array
+from imitation.progress import Progress, silent
+
+MOST = 60
+Method = Literal["detail", "paper"]
+
+
+class Deformer:
+    """Deforms one mesh, keeping its details; everything that depends on the mesh alone is computed once.
+
+    The energy is the paper's G (eq. 10) with the differential coordinates turned by the rotation of each one-ring's
+    edges, plus a membrane that keeps limbs from inflating:
+    ``sum |(LU)_i - R_i delta_i|^2 / m_i + a / 2S sum w_ij |u_i - u_j - R_i (v_i - v_j)|^2 + |CU - p|^2 / eps``.
+
+    Parameters
+    ----------
+    vertices : (n, 3), faces : (f, 3); any triangle mesh, see ``prepare_mesh``.
+    method : "detail" as above, or "paper" for the printed form ([26] of the paper).
+    stretch_weight : a, resistance to stretching.
+    stiffness : (n,) positive, 1 = normal; parts that should bend less get more.
+    keep_volume : keep the volume of the rest pose (closed meshes only).
+    """
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        faces: ArrayLike,
+        *,
+        method: Method = "detail",
+        stretch_weight: float = 300.0,
+        stiffness: ArrayLike | None = None,
+        keep_volume: bool = False,
+    ) -> None:
+        from imitation.deformation.system import System
+
+        if not (np.isfinite(stretch_weight) and stretch_weight >= 0):
+            raise InputError(f"The stretch weight must be zero or more, but is {stretch_weight}.")
+        self.mesh = prepare_mesh(vertices, faces)
+        self.system = System(self.mesh, float(stretch_weight), stiffness)
+        self.method = method
+
+    def solve(
+        self,
+        points: Mapping[int, ArrayLike],
+        rays: Mapping[int, ArrayLike] | None = None,
+        camera: Camera | None = None,
+        *,
+        start: ArrayLike | Pose | None = None,
+        depths: Mapping[int, float] | None = None,
+        softness: Mapping[int, float] | None = None,
+        iterations: int | None = None,
+        tolerance: float = 1e-6,
+    ) -> Array:
+        """Deform the mesh so that vertices lie at points and on rays.
+
+        Parameters
+        ----------
+        points, rays, camera, depths, softness : see ``FrameConstraints``.
+        start : an earlier pose, (n, 3) or a ``Pose``; by default chosen from the constraints.
+        iterations : number of steps; by default until the root mean square step is at most ``tolerance`` times the
+            diagonal of the rest mesh, 60 at most.
+
+        Returns
+        -------
+        (n, 3) vertices in the caller's order, world.
+
+        Raises
+        ------
+        InputError
+            See ``build_rows``.
+        """
+        asked = FrameConstraints(points, rays, camera, depths, softness)
+        return self.solve_pose(asked, start=start, iterations=iterations, tolerance=tolerance).vertices
+
+    def solve_pose(
+        self,
+        asked: FrameConstraints,
+        *,
+        start: ArrayLike | Pose | None = None,
+        iterations: int | None = None,
+        tolerance: float = 1e-6,
+        most: int = MOST,
+    ) -> Pose:
+        """As ``solve``, with the rotations for a warm start, the number of steps and warnings."""
+        from imitation.deformation.kernels import relax
+
+        rows = build_rows(self.mesh, asked)
+        if not len(rows.handles):
+            return self._as_pose(start)
+        inner, turns = self._begin(rows, start)
+        small = self.system.small(rows)
+        limit, within = (most, tolerance) if iterations is None else (int(iterations), 0.0)
+        made, step = relax(inner, turns, self.system.arrays, small.arrays(rows.target), limit, within, 1)
+        return Pose(self.outward(inner), inner, turns, int(made), float(step), iterations is not None or step <= within)
+
+    def solve_sequence(
+        self,
+        frames: Sequence[FrameConstraints],
+        *,
+        start: ArrayLike | Pose | None = None,
+        tolerance: float = 1e-6,
+        max_iterations: int = MOST,
+        iterations: int | None = None,
+        progress: Progress | None = None,
+        on_frame: Callable[[int, Array], None] | None = None,
+    ) -> Array:
+        """Deform the mesh in every frame, each started from the one before.
+
+        Parameters
+        ----------
+        frames : what each frame asks for. start : pose before the first frame, as in ``solve``.
+        on_frame : called with the frame's position and its vertices (n, 3) as soon as they are solved.
+
+        Returns
+        -------
+        (frames, n, 3) vertices.
+        """
+        result = np.empty((len(frames), len(self.mesh.vertices), 3))
+        report = progress or silent
+        report(0.0)
+        poses = self.solve_poses(frames, start=start, tolerance=tolerance, most=max_iterations, iterations=iterations)
+        for position, pose in enumerate(poses):
+            result[position] = pose.vertices
+            if on_frame is not None:
+                on_frame(position, result[position])
+            report((position + 1) / len(frames))
+        return result
+
+    def solve_poses(
+        self,
+        frames: Sequence[FrameConstraints],
+        *,
+        start: ArrayLike | Pose | None = None,
+        tolerance: float = 1e-6,
+        most: int = MOST,
+        iterations: int | None = None,
+    ) -> Iterator[Pose]:
+        """The frames of ``solve_sequence`` one after the other, with their reports."""
+        previous = start
+        for asked in frames:
+            previous = self.solve_pose(asked, start=previous, iterations=iterations, tolerance=tolerance, most=most)
+            yield previous
+
+    # ---- poses in the solver's order and units
+
+    def inward(self, vertices: ArrayLike) -> Array:
+        """The caller's vertices (n, 3) as welded vertices (m, 3) in the solver's order and units."""
+        given = np.asarray(vertices, np.float64)
+        if given.shape != self.mesh.vertices.shape or not np.isfinite(given).all():
+            raise InputError(
+                f"The start pose must be {self.mesh.vertices.shape} finite numbers, but has shape {given.shape}."
+            )
+        welded = np.empty((len(self.mesh.positions), 3))
+        welded[self.mesh.index[::-1]] = given[::-1]
+        return np.ascontiguousarray(((welded - self.mesh.centre) / self.mesh.diagonal)[self.system.order])
+
+    def outward(self, inner: Array) -> Array:
+        """Welded vertices (m, 3) in the solver's order and units as the caller's vertices (n, 3)."""
+        mesh = self.mesh
+        world: Array = inner[self.system.place[mesh.index]] * mesh.diagonal + mesh.centre
+        return world
+
+    def _as_pose(self, start: ArrayLike | Pose | None) -> Pose:
+        if isinstance(start, Pose):
+            return start
+        vertices = self.mesh.vertices if start is None else np.array(start, np.float64)
+        inner = self.inward(vertices)
+        return Pose(vertices, inner, self._turns(inner, None), warnings=("Nothing holds the mesh in this frame.",))
+
+    def _turns(self, inner: Array, turn: Array | None) -> Array:
+        """Rotations (m, 4) that fit a pose, starting from one turn for all."""
+        from imitation.deformation.kernels import fit_turns
+
+        if turn is None:
+            turn = quaternion_of(kabsch(self.system.rest, inner, self.system.area)[0])
+        turns = np.tile(turn, (len(inner), 1))
+        start, other, edge, detail = self.system.arrays[:4]
+        fit_turns(inner, turns, start, other, edge, detail, 12)
+        return turns
+
+    def _begin(self, rows: Rows, start: ArrayLike | Pose | None) -> tuple[Array, Array]:
+        place = self.system.place[rows.handles]
+        if start is None:
+            return self._cold(rows, place)
+        if isinstance(start, Pose):
+            inner, turns = start.inner.copy(), start.turns.copy()
+        else:
+            inner = self.inward(start)
+            turns = self._turns(inner, None)
+        handles = inner[place]
+        gap = np.einsum("ri,ri->r", rows.direction, handles[rows.owner]) - rows.target
+        if np.abs(gap).max() > FAR:
+            rotation, translation, _ = rigid_fit(rows, handles, np.eye(3), np.zeros(3))
+            inner = inner @ rotation.T + translation
+            turns = np.ascontiguousarray(quaternion_product(quaternion_of(rotation), turns))
+        return np.ascontiguousarray(inner), turns
+
+    def _cold(self, rows: Rows, place: Array) -> tuple[Array, Array]:
+        rest = self.system.rest
+        handles = rest[place]
+        rotation, translation = first_motion(rows, handles)
+        turn = quaternion_of(rotation)
+        moved = np.ascontiguousarray(rest @ rotation.T + translation)
+        if rows.pinned.all() and np.abs(moved[place] - rows.place).max() > FAR:
+            warped = warp(rest, handles, rows.place)
+            if warped is not None:
+                return np.ascontiguousarray(warped), self._turns(warped, turn)
+        return moved, np.tile(turn, (len(rest), 1))

@@ -1,0 +1,271 @@
+"""Compiled inner loops of the deformation: the local step, the global step, Anderson's mixing.
+
+Shapes: m welded vertices in elimination order, e directed edges (compressed rows), k handles, r constraint rows.
+All lengths are in diagonals of the rest mesh.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from imitation.deformation.factor import solve_three
+
+OPTIONS = {"cache": True, "nogil": True, "boundscheck": False, "error_model": "numpy"}
+WINDOW = 5
+"""Anderson's mixing looks back this many steps."""
+RESTART = 4.0
+"""It forgets them when the squared step exceeds the smallest so far by this factor."""
+
+
+@njit(**OPTIONS)
+def local_step(pose, turn, start, other, edge, detail, spread, turned):
+    """One Newton step on every vertex's rotation, then the right-hand sides with the new rotations.
+
+    Rotation i is the polar factor of ``S_i = sum_j w_ij (u_i - u_j) (v_i - v_j)'``; with ``B = R' S`` the step is
+    ``omega = (tr(B) I - sym(B))^-1 axial(B)``, applied as a Cayley transform.
+
+    Parameters
+    ----------
+    pose : (m, 3). turn : (m, 4) unit quaternions, updated. start, other : compressed rows of the neighbours.
+    edge : (e, 3) ``w_ij (v_i - v_j)``. detail : (m, 3) ``delta``.
+    spread : (m, 3) out, ``sum_j w_ij (R_i + R_j) / 2 (v_i - v_j)``. turned : (m, 3) out, ``R_i delta_i``.
+    """
+    size = len(pose)
+    for i in range(size):
+        spread[i, 0] = 0.0
+        spread[i, 1] = 0.0
+        spread[i, 2] = 0.0
+    for i in range(size):
+        x, y, z = pose[i, 0], pose[i, 1], pose[i, 2]
+        s00 = s01 = s02 = s10 = s11 = s12 = s20 = s21 = s22 = 0.0
+        for p in range(start[i], start[i + 1]):
+            j = other[p]
+            a, b, c = x - pose[j, 0], y - pose[j, 1], z - pose[j, 2]
+            d, e, f = edge[p, 0], edge[p, 1], edge[p, 2]
+            s00 += a * d
+            s01 += a * e
+            s02 += a * f
+            s10 += b * d
+            s11 += b * e
+            s12 += b * f
+            s20 += c * d
+            s21 += c * e
+            s22 += c * f
+        qw, qx, qy, qz = turn[i, 0], turn[i, 1], turn[i, 2], turn[i, 3]
+        r00, r01, r02 = 1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy - qw * qz), 2 * (qx * qz + qw * qy)
+        r10, r11, r12 = 2 * (qx * qy + qw * qz), 1 - 2 * (qx * qx + qz * qz), 2 * (qy * qz - qw * qx)
+        r20, r21, r22 = 2 * (qx * qz - qw * qy), 2 * (qy * qz + qw * qx), 1 - 2 * (qx * qx + qy * qy)
+        b00 = r00 * s00 + r10 * s10 + r20 * s20
+        b11 = r01 * s01 + r11 * s11 + r21 * s21
+        b22 = r02 * s02 + r12 * s12 + r22 * s22
+        b01 = r00 * s01 + r10 * s11 + r20 * s21
+        b10 = r01 * s00 + r11 * s10 + r21 * s20
+        b02 = r00 * s02 + r10 * s12 + r20 * s22
+        b20 = r02 * s00 + r12 * s10 + r22 * s20
+        b12 = r01 * s02 + r11 * s12 + r21 * s22
+        b21 = r02 * s01 + r12 * s11 + r22 * s21
+        g0, g1, g2 = b21 - b12, b02 - b20, b10 - b01
+        trace = b00 + b11 + b22
+        h00, h11, h22 = b11 + b22, b00 + b22, b00 + b11
+        h01, h02, h12 = -0.5 * (b01 + b10), -0.5 * (b02 + b20), -0.5 * (b12 + b21)
+        c00, c01, c02 = h11 * h22 - h12 * h12, h02 * h12 - h01 * h22, h01 * h12 - h02 * h11
+        c11, c12, c22 = h00 * h22 - h02 * h02, h01 * h02 - h00 * h12, h00 * h11 - h01 * h01
+        det = h00 * c00 + h01 * c01 + h02 * c02
+        if h00 > 0.0 and c22 > 0.0 and det > 1e-9 * trace * trace * trace:
+            inverse = 1.0 / det
+            o0 = (c00 * g0 + c01 * g1 + c02 * g2) * inverse
+            o1 = (c01 * g0 + c11 * g1 + c12 * g2) * inverse
+            o2 = (c02 * g0 + c12 * g1 + c22 * g2) * inverse
+        else:
+            extent = np.sqrt(
+                s00 * s00
+                + s01 * s01
+                + s02 * s02
+                + s10 * s10
+                + s11 * s11
+                + s12 * s12
+                + s20 * s20
+                + s21 * s21
+                + s22 * s22
+            )
+            inverse = 2.0 / (abs(trace) + 0.3 * extent + 1e-300)
+            o0, o1, o2 = g0 * inverse, g1 * inverse, g2 * inverse
+        length = o0 * o0 + o1 * o1 + o2 * o2
+        if length > 4.0:
+            shrink = 2.0 / np.sqrt(length)
+            o0, o1, o2 = o0 * shrink, o1 * shrink, o2 * shrink
+        # cayley(omega) is the quaternion (1, omega / 2) made unit
+        o0, o1, o2 = 0.5 * o0, 0.5 * o1, 0.5 * o2
+        nw = qw - qx * o0 - qy * o1 - qz * o2
+        nx = qx + qw * o0 + qy * o2 - qz * o1
+        ny = qy + qw * o1 + qz * o0 - qx * o2
+        nz = qz + qw * o2 + qx * o1 - qy * o0
+        unit = 1.0 / np.sqrt(nw * nw + nx * nx + ny * ny + nz * nz)
+        qw, qx, qy, qz = nw * unit, nx * unit, ny * unit, nz * unit
+        turn[i, 0], turn[i, 1], turn[i, 2], turn[i, 3] = qw, qx, qy, qz
+        r00, r01, r02 = 1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy - qw * qz), 2 * (qx * qz + qw * qy)
+        r10, r11, r12 = 2 * (qx * qy + qw * qz), 1 - 2 * (qx * qx + qz * qz), 2 * (qy * qz - qw * qx)
+        r20, r21, r22 = 2 * (qx * qz - qw * qy), 2 * (qy * qz + qw * qx), 1 - 2 * (qx * qx + qy * qy)
+        d, e, f = detail[i, 0], detail[i, 1], detail[i, 2]
+        a, b, c = r00 * d + r01 * e + r02 * f, r10 * d + r11 * e + r12 * f, r20 * d + r21 * e + r22 * f
+        turned[i, 0], turned[i, 1], turned[i, 2] = a, b, c
+        # sum_j w_ij R_i (v_i - v_j) is R_i delta_i again: its half stays here, edge by edge the other half goes over
+        spread[i, 0] += 0.5 * a
+        spread[i, 1] += 0.5 * b
+        spread[i, 2] += 0.5 * c
+        for p in range(start[i], start[i + 1]):
+            j = other[p]
+            d, e, f = 0.5 * edge[p, 0], 0.5 * edge[p, 1], 0.5 * edge[p, 2]
+            spread[j, 0] -= r00 * d + r01 * e + r02 * f
+            spread[j, 1] -= r10 * d + r11 * e + r12 * f
+            spread[j, 2] -= r20 * d + r21 * e + r22 * f
+
+
+@njit(**OPTIONS)
+def apply_inverse(ground, shifted, area, total, coupling, spread, turned):
+    """Turn the two right-hand sides into ``G b``, in place in ``turned``; b = L M^-1 turned + coupling * spread.
+
+    ``Q^-1 = (L + c M)^-1 M L^-1``, where L is held at its last vertex (b has no constant part, so nothing is lost) and
+    the free constant is taken out by making the intermediate result M-orthogonal to constants.
+    """
+    size = len(area)
+    solve_three(ground[0], ground[1], ground[2], ground[3], spread)
+    for axis in range(3):
+        mean = 0.0
+        for i in range(size):
+            mean += area[i] * spread[i, axis]
+        mean /= total
+        for i in range(size):
+            turned[i, axis] += coupling * area[i] * (spread[i, axis] - mean)
+    solve_three(shifted[0], shifted[1], shifted[2], shifted[3], turned)
+
+
+@njit(**OPTIONS)
+def constrain(free, response, handle, owner, row, target, matrix, inverse):
+    """Add what the constraints do, in place: ``U = G b - G C' mu + t``.
+
+    Parameters
+    ----------
+    free : (m, 3) ``G b``. response : (m, k) columns of G. handle : (k,) vertices. owner : (r,) handle of each row.
+    row : (r, 3) directions. target : (r,). matrix, inverse : (r + 3, r + 3) of the small system.
+    """
+    rows, handles = len(owner), len(handle)
+    given = np.zeros(rows + 3)
+    for s in range(rows):
+        v = handle[owner[s]]
+        given[s] = row[s, 0] * free[v, 0] + row[s, 1] * free[v, 1] + row[s, 2] * free[v, 2] - target[s]
+    answer = inverse @ given
+    answer += inverse @ (given - matrix @ answer)
+    force = np.zeros((handles, 3))
+    for s in range(rows):
+        for axis in range(3):
+            force[owner[s], axis] += answer[s] * row[s, axis]
+    for i in range(len(free)):
+        a, b, c = answer[rows], answer[rows + 1], answer[rows + 2]
+        for h in range(handles):
+            g = response[i, h]
+            a -= g * force[h, 0]
+            b -= g * force[h, 1]
+            c -= g * force[h, 2]
+        free[i, 0] += a
+        free[i, 1] += b
+        free[i, 2] += c
+
+
+@njit(**OPTIONS)
+def mixing(gram, side, count):
+    """Weights of Anderson's mixing by elimination of the small normal equations; dependent columns get none."""
+    a = gram[:count, :count].copy()
+    b = side[:count].copy()
+    used = np.ones(count, np.bool_)
+    for j in range(count):
+        if not a[j, j] > 1e-12 * gram[j, j]:
+            used[j] = False
+            continue
+        for i in range(j + 1, count):
+            factor = a[i, j] / a[j, j]
+            for q in range(j, count):
+                a[i, q] -= factor * a[j, q]
+            b[i] -= factor * b[j]
+    for j in range(count - 1, -1, -1):
+        if not used[j]:
+            b[j] = 0.0
+            continue
+        for q in range(j + 1, count):
+            b[j] -= a[j, q] * b[q]
+        b[j] /= a[j, j]
+    return b
+
+
+@njit(**OPTIONS)
+def relax(pose, turn, mesh, constraints, iterations, tolerance, least):
+    """Local and global steps until the root mean square step is at most the tolerance; pose and turn are updated.
+
+    Returns the number of steps made and the last root mean square step.
+    """
+    start, other, edge, detail, area, total, coupling, ground, shifted = mesh
+    response, handle, owner, row, target, matrix, inverse = constraints
+    size = len(pose)
+    spread, new = np.empty((size, 3)), np.empty((size, 3))
+    last_new, last_step = np.empty((size, 3)), np.empty((size, 3))
+    new_change, step_change = np.empty((WINDOW, size, 3)), np.empty((WINDOW, size, 3))
+    gram, side = np.zeros((WINDOW, WINDOW)), np.zeros(WINDOW)
+    count, slot, best, step, made = 0, 0, np.inf, 0.0, 0
+    for made in range(1, iterations + 1):
+        local_step(pose, turn, start, other, edge, detail, spread, new)
+        apply_inverse(ground, shifted, area, total, coupling, spread, new)
+        constrain(new, response, handle, owner, row, target, matrix, inverse)
+        squared = 0.0
+        for i in range(size):
+            for axis in range(3):
+                change = new[i, axis] - pose[i, axis]
+                squared += change * change
+        step = np.sqrt(squared / size)
+        if made == iterations or (step <= tolerance and made >= least):
+            break
+        if squared > RESTART * best:
+            count, slot, best = 0, 0, squared
+        else:
+            best = min(best, squared)
+            if made > 1:
+                for i in range(size):
+                    for axis in range(3):
+                        new_change[slot, i, axis] = new[i, axis] - last_new[i, axis]
+                        step_change[slot, i, axis] = (new[i, axis] - pose[i, axis]) - last_step[i, axis]
+                count = min(count + 1, WINDOW)
+                for h in range(count):
+                    dot = 0.0
+                    for i in range(size):
+                        for axis in range(3):
+                            dot += step_change[slot, i, axis] * step_change[h, i, axis]
+                    gram[slot, h] = dot
+                    gram[h, slot] = dot
+                slot = (slot + 1) % WINDOW
+        for h in range(count):
+            dot = 0.0
+            for i in range(size):
+                for axis in range(3):
+                    dot += step_change[h, i, axis] * (new[i, axis] - pose[i, axis])
+            side[h] = dot
+        weight = mixing(gram, side, count)
+        for i in range(size):
+            for axis in range(3):
+                last_new[i, axis] = new[i, axis]
+                last_step[i, axis] = new[i, axis] - pose[i, axis]
+                value = new[i, axis]
+                for h in range(count):
+                    value -= weight[h] * new_change[h, i, axis]
+                pose[i, axis] = value
+    for i in range(size):
+        for axis in range(3):
+            pose[i, axis] = new[i, axis]
+    return made, step
+
+
+@njit(**OPTIONS)
+def fit_turns(pose, turn, start, other, edge, detail, sweeps):
+    """Bring the rotations to the pose without moving it."""
+    spread, turned = np.empty_like(pose), np.empty_like(pose)
+    for _ in range(sweeps):
+        local_step(pose, turn, start, other, edge, detail, spread, turned)

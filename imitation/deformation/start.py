@@ -1,0 +1,101 @@
+"""Where the iteration begins: a pose and a rotation for every vertex (the initial rotation is part of the method)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from imitation.deformation.constraints import Rows
+from imitation.geometry import axis_rotation, kabsch, rotation_of
+from imitation.geometry.projection import Array
+
+FAR = 0.05
+"""Handles that have moved by more than this share of the diagonal ask for a new start."""
+
+
+def residuals(rows: Rows, handles: Array) -> Array:
+    """Residual (r,) of every row at handle positions (k, 3), weak rows scaled down."""
+    distance = np.einsum("ri,ri->r", rows.direction, handles[rows.owner]) - rows.target
+    return distance * np.sqrt(np.minimum(rows.softness, 1.0))
+
+
+def rigid_fit(rows: Rows, handles: Array, rotation: Array, translation: Array) -> tuple[Array, Array, float]:
+    """Best rigid motion of handles (k, 3) to the rows from one start, by damped Gauss-Newton; with its cost."""
+    weight = np.sqrt(rows.softness)
+    damping = 1e-4
+    error = residuals(rows, handles @ rotation.T + translation)
+    cost = float(error @ error)
+    for _ in range(60):
+        # About the handles' own centre, so that a lone handle moves the mesh and does not turn it.
+        arm = (handles - handles.mean(axis=0)) @ rotation.T
+        slope = np.concatenate([np.cross(arm[rows.owner], rows.direction), rows.direction], axis=1) * weight[:, None]
+        normal = slope.T @ slope
+        size = np.diagonal(normal) + 1e-9 * np.trace(normal)
+        step = -np.linalg.solve(normal + damping * np.diag(size), slope.T @ error)
+        tried = rotation_of(step[:3]) @ rotation
+        moved = translation + step[3:] + (rotation - tried) @ handles.mean(axis=0)
+        new = residuals(rows, handles @ tried.T + moved)
+        lower = float(new @ new)
+        if lower <= cost:
+            done = cost - lower <= 1e-12 * cost + 1e-24
+            rotation, translation, error, cost, damping = tried, moved, new, lower, damping * 0.3
+            if done:
+                break
+        else:
+            damping *= 5
+            if damping > 1e8:
+                break
+    return rotation, translation, cost
+
+
+def first_motion(rows: Rows, handles: Array) -> tuple[Array, Array]:
+    """Rigid motion of the rest pose to the constraints of a frame that has no earlier pose.
+
+    Points alone: Kabsch. With rays: rigid fits from six turns about the vertical axis, the cheapest wins; the turn
+    of the rest pose is kept where another is not clearly better.
+    """
+    if rows.pinned.all():
+        return kabsch(handles, rows.place)
+    starts = [axis_rotation([0, 0, 1], angle) for angle in np.arange(6) * np.pi / 3]
+    if rows.pinned.sum() >= 3:
+        starts.insert(0, kabsch(handles[rows.pinned], rows.place[rows.pinned])[0])
+    best: tuple[float, Array, Array] | None = None
+    for rotation in starts:
+        fitted = rigid_fit(rows, handles, rotation, _shift(rows, handles @ rotation.T))
+        if best is None or fitted[2] < 0.8 * best[0] - 1e-12:
+            best = fitted[2], fitted[0], fitted[1]
+    assert best is not None
+    return best[1], best[2]
+
+
+def _shift(rows: Rows, handles: Array) -> Array:
+    """Translation (3,) that fits the rows best, the shortest one where some direction is free."""
+    weight = np.sqrt(rows.softness)
+    wanted = -residuals(rows, handles)
+    shift: Array = np.linalg.lstsq(rows.direction * weight[:, None], wanted, rcond=1e-6)[0]
+    return shift
+
+
+def warp(rest: Array, handles: Array, targets: Array) -> Array | None:
+    """Smooth warp of the rest pose (m, 3) that takes handles to targets (k, 3), |r|^3 kernel with an affine part.
+
+    None where the handles are fewer than four or nearly in one plane, so that the affine part is not determined.
+    """
+    centred = handles - handles.mean(axis=0)
+    spread = np.linalg.svd(centred, compute_uv=False)
+    if len(handles) < 4 or spread[2] < 0.05 * spread[0]:
+        return None
+    count = len(handles)
+    matrix = np.zeros((count + 4, count + 4))
+    matrix[:count, :count] = np.linalg.norm(handles[:, None] - handles[None], axis=2) ** 3
+    matrix[:count, count] = matrix[count, :count] = 1
+    matrix[:count, count + 1 :] = handles
+    matrix[count + 1 :, :count] = handles.T
+    try:
+        weights = np.linalg.solve(matrix, np.concatenate([targets, np.zeros((4, 3))]))
+    except np.linalg.LinAlgError:
+        return None
+    result = weights[count] + rest @ weights[count + 1 :]
+    for handle, weight in zip(handles, weights[:count], strict=True):
+        away = rest - handle
+        result += (np.einsum("ij,ij->i", away, away) ** 1.5)[:, None] * weight
+    return result if np.isfinite(result).all() else None
