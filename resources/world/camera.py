@@ -61,9 +61,8 @@ def make_camera(
     diagonal : of the subject, metres.
     azimuth : degrees between the subject's heading (+x) and the camera as the subject sees it: 90 from its right side,
         0 from in front.
-    style : "handheld" (shakes, follows a little, walks along), "passing" (walks past the subject against its way, at its side:
-        azimuth 60 or more),
-        "static" (a tripod), "rotation" (a tripod whose head turns with the subject).
+    style : "handheld" (shakes, follows a little, walks along), "passing" (walks past the subject against its way,
+        at its side: azimuth 60 or more), "static" (a tripod), "rotation" (a tripod whose head turns with the subject).
     size : (width, height) pixels. focal : pixels, 900 at width 960 where None.
     distance : from the subject's mean place, diagonals. height : of the camera above the subject's middle, metres.
     follow : share of the subject's way that the camera walks along. travel : metres it also moves sideways.

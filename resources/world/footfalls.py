@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import attrs
 import numpy as np
 
@@ -38,12 +40,12 @@ def gait_of(kind: Kind, terrain: Stairs) -> Gait:
         return Gait(30.0, 2 * terrain.tread if terrain.count else 0.66, 0.64, phases, hips, sides, 0.075)
     phases = {"left": 0.0, "right": 0.5}
     stride = 2 * terrain.tread if terrain.count else 1.0
-    return Gait(34.0, stride, 0.6, phases, dict.fromkeys(phases, 0.04), {"left": 0.1, "right": -0.1}, 0.07)
+    return Gait(34.0, stride, 0.6, phases, dict.fromkeys(phases, 0.04), {"left": 0.1, "right": -0.1}, 0.095)
 
 
 @attrs.frozen(eq=False)
 class Footfall:
-    """One stance of a foot: from time ``land`` to ``leave`` (frames, fractional) at ``place`` (3,), the sole's middle."""
+    """A stance: from time ``land`` to ``leave`` (frames, fractional), the middle of the sole at ``place`` (3,)."""
 
     land: float
     leave: float
@@ -86,7 +88,7 @@ def foot_path(stances: list[Footfall], gait: Gait, frames: int) -> tuple[Array, 
     time = np.arange(frames, dtype=np.float64)
     place, swing, late = np.zeros((frames, 3)), np.zeros(frames), np.ones(frames)
     planted = []
-    for here, there in zip(stances[:-1], stances[1:], strict=True):
+    for here, there in pairwise(stances):
         stands = (time >= here.land) & (time <= here.leave)
         place[stands] = here.place
         late[stands] = (time[stands] - here.land) / (here.leave - here.land)
@@ -97,8 +99,8 @@ def foot_path(stances: list[Footfall], gait: Gait, frames: int) -> tuple[Array, 
         u = (time[moves] - here.leave) / (there.land - here.leave)
         climb = there.place[2] - here.place[2]
         forward = here.place + (there.place - here.place) * ease(u)[:, None]
-        forward[:, 2] = here.place[2] + climb * ease(u * (1.8 if climb > 0 else 1.0))
+        forward[:, 2] = here.place[2] + climb * ease(u * (1.35 if climb > 0 else 1.0))
         # A foot that climbs goes up before it goes forward, to clear the edges of the treads.
-        forward[:, 2] += (gait.lift + 0.25 * max(climb, 0)) * np.sin(np.pi * u**0.8) ** 2
+        forward[:, 2] += (gait.lift + 0.12 * max(climb, 0)) * np.sin(np.pi * u**0.8) ** 2
         place[moves], swing[moves] = forward, u
     return place, swing, late, planted

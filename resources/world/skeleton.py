@@ -101,6 +101,11 @@ def two_links(hip: ArrayLike, ankle: ArrayLike, upper: ArrayLike, lower: ArrayLi
     return knee
 
 
+def by(x: float, y: float, z: float) -> Array:
+    """A step (3,) in metres."""
+    return np.array([x, y, z], np.float64)
+
+
 ANKLE = 0.05  # height of a quadruped's ankle above its sole
 FOOT = 0.09  # height of a biped's ankle above its sole
 
@@ -136,7 +141,7 @@ def quadruped(proportions: Proportions = SUBJECT) -> Skeleton:
         body.bone(ear, "head", head(0.0, s * 0.065, 0.06))
         body.cover(ear, head(0.0, s * 0.068, 0.055), head(-0.015, s * 0.105, -0.07), 0.026 * h, 0.034 * h)
     at = trunk(-0.44, 0, 0.61)
-    tail = [at, at + [-0.15, 0, 0.0], at + [-0.28, 0, 0.07], at + [-0.37, 0, 0.17]]
+    tail = [at, at + by(-0.15, 0, 0.0), at + by(-0.28, 0, 0.07), at + by(-0.37, 0, 0.17)]
     radii = [0.045, 0.031, 0.028, 0.022]
     for i in range(3):
         body.bone(f"tail {i + 1}", "pelvis" if i == 0 else f"tail {i}", tail[i])
@@ -152,7 +157,7 @@ def quadruped(proportions: Proportions = SUBJECT) -> Skeleton:
         "nose": head(0.292, 0, -0.05),
         "poll": head(0.0, 0, 0.092),
         "back": trunk(0.02, 0, 0.72),
-        "tail root": at + [0.0, 0, 0.05],
+        "tail root": at + by(0.0, 0, 0.05),
     }
     return body
 
@@ -170,15 +175,15 @@ def _paw_leg(
     body.bone(names[2], names[1], ankle)
     y_out = 0.01 * np.sign(y)
     if hind:
-        hock = 0.4 * knee + 0.6 * ankle + [-0.075 * p.legs, 0, 0.02]
-        body.cover(names[0], hip, 0.35 * hip + 0.65 * knee + [-0.015, y_out, 0], 0.082, 0.066)
+        hock = 0.4 * knee + 0.6 * ankle + by(-0.075 * p.legs, 0, 0.02)
+        body.cover(names[0], hip, 0.35 * hip + 0.65 * knee + by(-0.015, y_out, 0), 0.082, 0.066)
         body.cover(names[0], 0.35 * hip + 0.65 * knee, knee, 0.06, 0.048)
         body.cover(names[1], knee, hock, 0.05, 0.027)
         body.cover(names[1], hock, ankle, 0.026, 0.026)
     else:
         body.cover(names[0], hip, knee, 0.07, 0.046)
         body.cover(names[1], knee, ankle, 0.041, 0.027)
-    body.cover(names[2], ankle + [0.0, 0, -0.016], ankle + [0.05, 0, -0.018], 0.035, 0.036)
+    body.cover(names[2], ankle + by(0.0, 0, -0.016), ankle + by(0.05, 0, -0.018), 0.035, 0.036)
     sole = np.array([ankle[0] + 0.03, y, 0.0])
     body.legs.append(Leg(name, names[0], names[1], names[2], np.array([pole, 0, 0.0]), ((f"{name} paw", sole),)))
     side = np.array([0, np.sign(y), 0])
@@ -219,9 +224,9 @@ def biped(proportions: Proportions = SUBJECT) -> Skeleton:
 
 
 def _arm(body: Skeleton, side: str, s: int, shoulder: Array) -> None:
-    elbow = shoulder + [-0.03, s * 0.075, -0.28]
-    wrist = elbow + [0.06, s * 0.03, -0.25]
-    tip = wrist + [0.02, s * 0.005, -0.1]
+    elbow = shoulder + by(-0.03, s * 0.075, -0.28)
+    wrist = elbow + by(0.06, s * 0.03, -0.25)
+    tip = wrist + by(0.02, s * 0.005, -0.1)
     body.bone(f"{side} arm", "chest", shoulder)
     body.bone(f"{side} forearm", f"{side} arm", elbow)
     body.bone(f"{side} hand", f"{side} forearm", wrist)
@@ -229,9 +234,9 @@ def _arm(body: Skeleton, side: str, s: int, shoulder: Array) -> None:
     body.cover(f"{side} forearm", elbow, wrist, 0.045, 0.032)
     body.cover(f"{side} hand", wrist, tip, 0.036, 0.034)
     body.keys |= {
-        f"{side} shoulder": shoulder + [0, s * 0.06, 0.02],
-        f"{side} elbow": elbow + [-0.04, s * 0.02, 0],
-        f"{side} hand": tip + [0, 0, -0.03],
+        f"{side} shoulder": shoulder + by(0, s * 0.06, 0.02),
+        f"{side} elbow": elbow + by(-0.04, s * 0.02, 0),
+        f"{side} hand": tip + by(0, 0, -0.03),
     }
 
 
@@ -244,7 +249,7 @@ def _shoe_leg(body: Skeleton, side: str, y: float, hip: Array, p: Proportions) -
     body.bone(names[2], names[1], ankle)
     body.cover(names[0], hip, knee, 0.09, 0.062)
     body.cover(names[1], knee, ankle, 0.06, 0.042)
-    body.cover(names[2], ankle + [-0.03, 0, -0.045], ankle + [0.15, 0.0, -0.055], 0.046, 0.038)
+    body.cover(names[2], ankle + by(-0.03, 0, -0.045), ankle + by(0.15, 0.0, -0.055), 0.046, 0.038)
     heel, toe = np.array([-0.045, y, 0.0]), np.array([0.165, y, 0.0])
     soles = ((f"{side} heel", heel), (f"{side} toe", toe))
     body.legs.append(Leg(side, names[0], names[1], names[2], np.array([1.0, 0, 0]), soles))
@@ -252,7 +257,7 @@ def _shoe_leg(body: Skeleton, side: str, y: float, hip: Array, p: Proportions) -
     body.keys |= {
         f"{side} heel": heel,
         f"{side} toe": toe,
-        f"{side} knee": knee + [0.06, 0, 0],
+        f"{side} knee": knee + by(0.06, 0, 0),
         f"{side} hip": hip + 0.085 * out,
     }
 
