@@ -1,6 +1,10 @@
 """Files from and for the outside: video, images, masks, meshes, sequences, cameras, tracks."""
 
 from app.formats.images import ImageFrames, open_images, read_image, write_image
+from app.formats.meshes import read_mesh, write_mesh
+from app.formats.meshfile import MeshFile
+from app.formats.sequence import MeshSequence
+from app.formats.sequences import read_sequence, write_sequence
 from app.formats.source import FrameSource, Picture
 from app.formats.video import VideoFrames, open_video
 from app.formats.video_write import write_video, write_working_copy
@@ -8,12 +12,18 @@ from app.formats.video_write import write_video, write_working_copy
 __all__ = [
     "FrameSource",
     "ImageFrames",
+    "MeshFile",
+    "MeshSequence",
     "Picture",
     "VideoFrames",
     "open_images",
     "open_video",
     "read_image",
+    "read_mesh",
+    "read_sequence",
     "write_image",
+    "write_mesh",
+    "write_sequence",
     "write_video",
     "write_working_copy",
 ]

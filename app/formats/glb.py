@@ -1,0 +1,169 @@
+"""Meshes from and to GLB: Y up and metres there, Z up here."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.formats.gltf import Gltf, GltfWriter, read_gltf, to_linear, to_srgb
+from app.formats.meshfile import MeshFile, to_int32, y_up_to_z_up, z_up_to_y_up
+from imitation.errors import InputError
+
+VERTICES, INDICES = 34962, 34963
+
+
+def read_glb(path: Path, data: bytes) -> MeshFile:
+    """Read all triangles of a GLB's scene as one mesh, turned to Z up; see read_mesh."""
+    gltf = read_gltf(path, data)
+    try:
+        pieces = [piece for node, matrix in nodes(gltf) for piece in _primitives(gltf, node, matrix)]
+    except (ValueError, KeyError, IndexError, TypeError) as error:
+        raise InputError(f"The file {path.name} is not a whole GLB or glTF file: export it again.") from error
+    if not pieces:
+        return MeshFile(np.zeros((0, 3)), np.zeros((0, 3)), None, "z", path.name)
+    starts = np.cumsum([0, *(len(vertices) for vertices, _, _ in pieces)])
+    vertices = np.concatenate([piece[0] for piece in pieces])
+    faces = np.concatenate([piece[1] + start for piece, start in zip(pieces, starts, strict=False)])
+    colors = None
+    if any(piece[2] is not None for piece in pieces):
+        white = [np.full((len(piece[0]), 3), 255, np.uint8) if piece[2] is None else piece[2] for piece in pieces]
+        colors = np.concatenate(white)
+    return MeshFile(y_up_to_z_up(vertices), to_int32(faces, path.name), colors, "z", path.name)
+
+
+def write_glb(
+    path: Path,
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    colors: NDArray[np.uint8] | None = None,
+    normals: NDArray[np.float64] | None = None,
+) -> None:
+    """Write one still mesh (Z up here, Y up in the file)."""
+    writer = GltfWriter()
+    primitive = base_primitive(writer, vertices, faces, colors, normals)
+    scene(writer, {"primitives": [primitive]})
+    writer.write(path)
+
+
+def base_primitive(
+    writer: GltfWriter,
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    colors: NDArray[np.uint8] | None,
+    normals: NDArray[np.float64] | None,
+) -> dict[str, Any]:
+    """Add a mesh's accessors and give its primitive."""
+    places = z_up_to_y_up(vertices).astype(np.float32)
+    attributes = {"POSITION": writer.add(places, "VEC3", target=VERTICES, bounds=True)}
+    if normals is not None:
+        turned = z_up_to_y_up(normals).astype(np.float32)
+        attributes["NORMAL"] = writer.add(turned, "VEC3", target=VERTICES)
+    if colors is not None:
+        linear = to_linear(colors)
+        attributes["COLOR_0"] = writer.add(linear, "VEC3", target=VERTICES, normalized=True)
+    indices = writer.add(faces.astype(np.uint32).reshape(-1, 1), "SCALAR", target=INDICES)
+    return {"attributes": attributes, "indices": indices, "material": 0, "mode": 4}
+
+
+def scene(writer: GltfWriter, mesh: dict[str, Any], name: str = "character") -> None:
+    """Make a scene of one mesh with a plain material."""
+    material = {
+        "name": name, "doubleSided": True,
+        "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8},
+    }  # fmt: skip
+    writer.tree |= {
+        "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": name}],
+        "meshes": [{"name": name, **mesh}], "materials": [material],
+    }  # fmt: skip
+
+
+def nodes(gltf: Gltf) -> list[tuple[dict[str, Any], NDArray[np.float64]]]:
+    """All nodes of the default scene with their matrices (4, 4) to the file's world."""
+    every = gltf.items("nodes")
+    scenes = gltf.items("scenes")
+    children = {child for node in every for child in node.get("children", [])}
+    roots = scenes[gltf.tree.get("scene", 0)].get("nodes", []) if scenes else []
+    stack = [(index, np.eye(4)) for index in (roots or [k for k in range(len(every)) if k not in children])][::-1]
+    found, seen = [], set[int]()
+    while stack:
+        index, parent = stack.pop()
+        if index in seen:
+            raise ValueError("nodes in a circle")
+        seen.add(index)
+        node = every[index]
+        matrix = parent @ _matrix(node)
+        found.append((node, matrix))
+        stack += [(child, matrix) for child in node.get("children", [])][::-1]
+    return found
+
+
+def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
+    if "matrix" in node:
+        return np.array(node["matrix"], np.float64).reshape(4, 4).T
+    x, y, z, w = np.array(node.get("rotation", (0, 0, 0, 1)), np.float64)
+    turn = np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn * np.array(node.get("scale", (1, 1, 1)), np.float64)
+    matrix[:3, 3] = node.get("translation", (0, 0, 0))
+    return matrix
+
+
+Piece = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.uint8] | None]
+
+
+def _primitives(gltf: Gltf, node: dict[str, Any], matrix: NDArray[np.float64]) -> list[Piece]:
+    if "mesh" not in node:
+        return []
+    pieces: list[Piece] = []
+    shared: dict[int, int] = {}
+    # A skinned mesh is placed by its joints; in rest that is where its own coordinates are.
+    place = np.eye(4) if "skin" in node else matrix
+    for primitive in gltf.items("meshes")[node["mesh"]]["primitives"]:
+        if primitive.get("mode", 4) not in (4, 5, 6):
+            continue
+        attributes = primitive["attributes"]
+        key = attributes["POSITION"]
+        local = gltf.accessor(key).astype(np.float64)
+        indices = gltf.accessor(primitive["indices"]) if "indices" in primitive else np.arange(len(local))
+        faces = _triangles(indices.reshape(-1).astype(np.int64), primitive.get("mode", 4))
+        if len(faces) and faces.max() >= len(local):
+            raise ValueError("index")
+        if np.linalg.det(place[:3, :3]) < 0:
+            faces = faces[:, ::-1]
+        if key in shared:
+            # Exporters cut one surface into materials that share their vertices: it stays one surface.
+            vertices, known, colors = pieces[shared[key]]
+            pieces[shared[key]] = (vertices, np.concatenate([known, faces]), colors)
+            continue
+        shared[key] = len(pieces)
+        pieces.append((local @ place[:3, :3].T + place[:3, 3], faces, _colors(gltf, primitive, len(local))))
+    return pieces
+
+
+def _triangles(indices: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
+    if mode == 4:
+        return indices[: len(indices) // 3 * 3].reshape(-1, 3)
+    if mode == 5:
+        strip = np.stack([indices[:-2], indices[1:-1], indices[2:]], axis=1)
+        strip[1::2] = strip[1::2][:, [1, 0, 2]]
+        return strip
+    rim = np.stack([indices[1:-1], indices[2:]], axis=1)
+    return np.concatenate([np.full((len(rim), 1), indices[0]), rim], axis=1)
+
+
+def _colors(gltf: Gltf, primitive: dict[str, Any], count: int) -> NDArray[np.uint8] | None:
+    factor = np.ones(3)
+    if "material" in primitive:
+        surface = gltf.items("materials")[primitive["material"]].get("pbrMetallicRoughness", {})
+        factor = np.array(surface.get("baseColorFactor", (1, 1, 1, 1))[:3], np.float64)
+    if "COLOR_0" not in primitive["attributes"]:
+        return None if (factor == 1).all() else to_srgb(np.tile(factor, (count, 1)))
+    values = gltf.accessor(primitive["attributes"]["COLOR_0"])[:, :3]
+    return to_srgb(values * factor)

@@ -1,0 +1,193 @@
+"""Reading and writing PLY, text and binary, every vertex kept in its place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.formats.meshfile import MeshFile, fan, to_int32
+from app.formats.ply_header import Element, Header, read_header
+from imitation.errors import InputError
+
+Columns = dict[str, Any]
+
+
+def read_ply(data: bytes, name: str) -> MeshFile:
+    """Read a PLY mesh; see read_mesh."""
+    header = read_header(data, name)
+    try:
+        tables = _text(data, header) if header.form == "ascii" else _binary(data, header)
+    except (ValueError, IndexError, OverflowError) as error:
+        raise InputError(f"The PLY file {name} is cut off or damaged: get a whole copy of it.") from error
+    vertex = tables.get("vertex", {})
+    if not all(axis in vertex for axis in "xyz"):
+        raise InputError(f"The PLY file {name} has no vertices with x, y and z.")
+    vertices = np.stack([np.asarray(vertex[axis], np.float64) for axis in "xyz"], axis=1)
+    face = tables.get("face", {})
+    lists = face.get("vertex_indices", face.get("vertex_index"))
+    if lists is None:
+        faces = np.zeros((0, 3), np.int64)
+    elif isinstance(lists, np.ndarray):
+        faces = _split(lists.astype(np.int64))
+    else:
+        faces = fan(lists)
+    return MeshFile(vertices, to_int32(faces, name), _colors(vertex), None, name)
+
+
+def write_ply(
+    path: Path,
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    colors: NDArray[np.uint8] | None = None,
+    normals: NDArray[np.float64] | None = None,
+    *,
+    exact: bool = False,
+) -> None:
+    """Write a binary little-endian PLY; positions as float32, or with ``exact`` as float64."""
+    real, kind = ("double", "<f8") if exact else ("float", "<f4")
+    fields: list[tuple[str, str]] = [(axis, kind) for axis in "xyz"]
+    lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(vertices)}"]
+    lines += [f"property {real} {axis}" for axis in "xyz"]
+    if normals is not None:
+        fields += [(axis, "<f4") for axis in ("nx", "ny", "nz")]
+        lines += [f"property float {axis}" for axis in ("nx", "ny", "nz")]
+    if colors is not None:
+        fields += [(channel, "u1") for channel in ("red", "green", "blue")]
+        lines += [f"property uchar {channel}" for channel in ("red", "green", "blue")]
+    lines += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", ""]
+    table = np.zeros(len(vertices), fields)
+    columns: list[NDArray[Any]] = [
+        vertices,
+        *([] if normals is None else [normals]),
+        *([] if colors is None else [colors]),
+    ]
+    values = [column[:, k] for column in columns for k in range(3)]
+    for (field, _), value in zip(fields, values, strict=True):
+        table[field] = value
+    triangles = np.zeros(len(faces), [("n", "u1"), ("v", "<i4", (3,))])
+    triangles["n"], triangles["v"] = 3, faces
+    with path.open("wb") as file:
+        file.write("\n".join(lines).encode("ascii"))
+        file.write(table.tobytes())
+        file.write(triangles.tobytes())
+
+
+def _split(polygons: NDArray[np.int64]) -> NDArray[np.int64]:
+    corners = polygons.shape[1]
+    if corners < 3:
+        return np.zeros((0, 3), np.int64)
+    fans = [polygons[:, [0, k, k + 1]] for k in range(1, corners - 1)]
+    return np.stack(fans, axis=1).reshape(-1, 3)
+
+
+def _colors(vertex: Columns) -> NDArray[np.uint8] | None:
+    for names in (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "diffuse_green", "diffuse_blue")):
+        if all(channel in vertex for channel in names):
+            values = np.stack([np.asarray(vertex[channel]) for channel in names], axis=1)
+            if values.dtype.kind == "f":
+                values = np.rint(np.nan_to_num(values) * 255)
+            elif values.dtype.itemsize == 2:
+                values = values // 257
+            painted: NDArray[np.uint8] = np.clip(values, 0, 255).astype(np.uint8)
+            return painted
+    return None
+
+
+def _text(data: bytes, header: Header) -> dict[str, Columns]:
+    lines = [line for line in data[header.start :].splitlines() if line.strip()]
+    tables: dict[str, Columns] = {}
+    done = 0
+    for element in header.elements:
+        rows = [line.split() for line in lines[done : done + element.count]]
+        done += element.count
+        if len(rows) < element.count:
+            raise ValueError(element.name)
+        tables[element.name] = _text_columns(rows, element)
+    return tables
+
+
+def _text_columns(rows: list[list[bytes]], element: Element) -> Columns:
+    if not any(item.length for item in element.properties):
+        width = len(element.properties)
+        table = np.array([row[:width] for row in rows], dtype=object).astype(np.float64).reshape(len(rows), -1)
+        if table.shape[1] < width:
+            raise ValueError(element.name)
+        return {
+            item.name: table[:, k].astype(item.kind if item.kind[0] != "f" else "f8")
+            for k, item in enumerate(element.properties)
+        }
+    columns: Columns = {item.name: [] for item in element.properties}
+    for row in rows:
+        place = 0
+        for item in element.properties:
+            if item.length is None:
+                columns[item.name].append(float(row[place]))
+                place += 1
+                continue
+            count = int(row[place])
+            values = row[place + 1 : place + 1 + count]
+            if count < 0 or len(values) < count:
+                raise ValueError(item.name)
+            columns[item.name].append([int(float(value)) for value in values] if item.kind[0] != "f" else [])
+            place += 1 + count
+    return columns
+
+
+def _binary(data: bytes, header: Header) -> dict[str, Columns]:
+    order = "<" if header.form == "binary_little_endian" else ">"
+    tables: dict[str, Columns] = {}
+    place = header.start
+    for element in header.elements:
+        columns, place = _even_rows(data, place, element, order)
+        if columns is None:
+            columns, place = _uneven_rows(data, place, element, order)
+        tables[element.name] = columns
+    return tables
+
+
+def _even_rows(data: bytes, place: int, element: Element, order: str) -> tuple[Columns | None, int]:
+    """All rows at once, if every list is as long as in the first row."""
+    fields: list[tuple[Any, ...]] = []
+    at = place
+    for k, item in enumerate(element.properties):
+        if item.length is None:
+            fields.append((f"v{k}", order + item.kind))
+            at += int(item.kind[1])
+            continue
+        count = int(np.frombuffer(data, order + item.length, 1, at)[0]) if element.count else 0
+        if count < 0 or count * int(item.kind[1]) > len(data) - at:
+            raise ValueError(item.name)
+        fields += [(f"n{k}", order + item.length), (f"v{k}", order + item.kind, (count,))]
+        at += int(item.length[1]) + count * int(item.kind[1])
+    rows_type = np.dtype(fields)
+    end = place + element.count * rows_type.itemsize
+    lists = any(item.length for item in element.properties)
+    if end > len(data):
+        if lists:
+            return None, place
+        raise ValueError(element.name)
+    rows = np.frombuffer(data, rows_type, element.count, place)
+    for k, item in enumerate(element.properties):
+        if item.length is not None and len(rows) and (rows[f"n{k}"] != rows[f"n{k}"][0]).any():
+            return None, place
+    return {item.name: rows[f"v{k}"] for k, item in enumerate(element.properties)}, end
+
+
+def _uneven_rows(data: bytes, place: int, element: Element, order: str) -> tuple[Columns, int]:
+    columns: Columns = {item.name: [] for item in element.properties}
+    for _ in range(element.count):
+        for item in element.properties:
+            count = 1
+            if item.length is not None:
+                count = int(np.frombuffer(data, order + item.length, 1, place)[0])
+                place += int(item.length[1])
+            size = int(item.kind[1])
+            if count < 0 or place + count * size > len(data):
+                raise ValueError(item.name)
+            values = np.frombuffer(data, order + item.kind, count, place).tolist() if count else []
+            place += count * size
+            columns[item.name].append(values if item.length is not None else values[0])
+    return columns, place
