@@ -13,7 +13,7 @@ from imitation.motion.banded import Array
 from imitation.propagation.base import SOFT, Base, make_deformer
 
 if TYPE_CHECKING:
-    from imitation.deformation import Deformer
+    from imitation.deformation import Deformer, FrameConstraints
 
 Committed = Mapping[int, ArrayLike]
 """vertex -> place (3,): positions of all key points and of the control vertices in one edited frame."""
@@ -76,6 +76,38 @@ def check_places(base: Base, edits: Mapping[int, Mapping[int, ArrayLike]]) -> No
                 raise InputError(f"The place of vertex {vertex} in edited frame {frame} needs three finite numbers.")
 
 
+def edit_constraints(
+    base: Base,
+    frame: int,
+    moves: Mapping[int, ArrayLike],
+    pose: Array,
+    pinned: Collection[int] = (),
+) -> FrameConstraints:
+    """What an edited frame asks of the mesh while its control vertices are being moved.
+
+    ``pose`` is the frame as it was before; see `commit_edit` for the rest. An interactive drag solves the same
+    constraints with few steps that `commit_edit` solves to the end.
+    """
+    from imitation.deformation import FrameConstraints
+
+    camera = base.cameras[frame]
+    points = {int(vertex): np.asarray(place, np.float64) for vertex, place in moves.items()}
+    for vertex in pinned:
+        points.setdefault(int(vertex), pose[vertex])
+    rays, depths, softness = {}, {}, {}
+    for key, vertex in enumerate(base.keys.vertices.tolist()):
+        if vertex in points:
+            continue
+        if base.keys.planted[frame, key]:
+            points[vertex] = pose[vertex]
+        else:
+            pixel = camera.project(pose[vertex])
+            rays[vertex] = (float(pixel[0]), float(pixel[1]))
+            depths[vertex] = float(camera.depth(pose[vertex]))
+            softness[vertex] = SOFT
+    return FrameConstraints(points, rays, camera, depths, softness)
+
+
 def _solve_edit(
     base: Base,
     frame: int,
@@ -88,22 +120,8 @@ def _solve_edit(
     current = base.vertices[frame] if pose is None else np.asarray(pose, np.float64)
     if current.shape != base.rest.shape:
         raise InputError(f"The pose to edit needs shape {base.rest.shape}, but has {current.shape}.")
-    camera = base.cameras[frame]
-    points = {int(vertex): np.asarray(place, np.float64) for vertex, place in moves.items()}
-    for vertex in pinned:
-        points.setdefault(int(vertex), current[vertex])
-    rays, depths, softness = {}, {}, {}
-    for key, vertex in enumerate(base.keys.vertices.tolist()):
-        if vertex in points:
-            continue
-        if base.keys.planted[frame, key]:
-            points[vertex] = current[vertex]
-        else:
-            pixel = camera.project(current[vertex])
-            rays[vertex] = (float(pixel[0]), float(pixel[1]))
-            depths[vertex] = float(camera.depth(current[vertex]))
-            softness[vertex] = SOFT
-    posed = deformer.solve(points, rays, camera, start=current, depths=depths, softness=softness)
+    asked = edit_constraints(base, frame, moves, current, pinned)
+    posed = deformer.solve_pose(asked, start=current).vertices
     committed = {vertex: posed[vertex].copy() for vertex in base.keys.vertices.tolist()}
-    committed.update({vertex: place.copy() for vertex, place in points.items()})
+    committed.update({vertex: np.array(place, np.float64) for vertex, place in asked.points.items()})
     return committed, posed
