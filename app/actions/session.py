@@ -84,7 +84,7 @@ class Session:
         return self._stages[1]
 
     def subscribe(self, listener: Changed) -> Callable[[], None]:
-        """Call ``listener(before, after)`` after every change of the present document; gives a function that stops it."""
+        """Call ``listener(before, after)`` after every change of the document; gives a function that stops it."""
         self._listeners.append(listener)
         return lambda: self._listeners.remove(listener)
 

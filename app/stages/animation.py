@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.model.character import Alignment, Character, PoseEdit, SolveChoice
+from app.model.character import Alignment, Character, PoseEdit
 from app.model.document import Document
 from app.model.tracks import Track
 from app.stages import scene, tracking
@@ -53,7 +53,14 @@ def animation(document: Document, character: Character) -> Stage:
         if (committed := _counting(edit, set(character.pairs.values())))
     )
     following = tuple((vertex, track) for vertex, track in character.following.items())
-    inputs = (character.id, edits, following, character.solve.smooth, character.solve.reach)
+    inputs = (
+        character.id,
+        edits,
+        following,
+        character.solve.smooth,
+        character.solve.reach,
+        character.solve.keep_volume,
+    )
     label = f"Propagating edits of {character.name}" if edits else f"Moving {character.name}"
     needs = (base(document, character),)
     return Stage(f"animation/{character.id}", label, _animation, inputs, needs, weight=0.5 + len(edits))
@@ -112,7 +119,8 @@ def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter
     paired, method, keep_volume, mirrors = inputs
     tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
     names = [name for name, _ in paired]
-    return solve_base(
+    deformer = context.media.deformer(aligned.vertices, aligned.faces, keep_volume)
+    solved = solve_base(
         aligned.vertices,
         aligned.faces,
         world.cameras,
@@ -122,10 +130,12 @@ def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter
         method=method,
         confidence={name: track.confidence for name, track in zip(names, tracks, strict=True)},
         mirrors=dict(mirrors) or None,
-        deformer=context.media.deformer(aligned, keep_volume),
+        deformer=deformer,
         progress=context.progress,
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),
     )
+    context.media.return_deformer(solved.rest, keep_volume, deformer)
+    return solved
 
 
 def _intervals(placed: list[PlacedContact]) -> list[tuple[int, int, Any]]:
@@ -135,29 +145,28 @@ def _intervals(placed: list[PlacedContact]) -> list[tuple[int, int, Any]]:
 def _animation(context: Context, inputs: Any, solved: Any) -> Animation:
     from imitation.propagation import propagate
 
-    character, edits, following, smooth, reach = inputs
-    if not edits:
-        return Animation(solved.vertices, solved.key_points, solved.keys.names, {})
+    character, edits, following, smooth, reach, keep_volume = inputs
     committed: dict[int, Mapping[int, Any]] = {
         frame: {vertex: np.array(place) for vertex, place in places} for frame, places, _ in edits
     }
-    last = edits[-1]
     limits = {frame: (reach.first, reach.last) for frame, _, _ in edits} if reach is not None else None
     # An earlier result on the same base lends the spans that have not changed; the bits are the same either way.
     memory = context.media.memory
+    deformer = context.media.deformer(solved.rest, solved.faces, keep_volume)
     result = propagate(
         solved,
         committed,
         smooth=smooth,
         follow=dict(following),
-        end=last[2],
+        end=edits[-1][2] if edits else None,
         reach=limits,
         origin=memory.get(("origin", character)),
         previous=memory.get(("imitation", character)),
-        deformer=context.media.deformer_of(solved),
+        deformer=deformer,
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),
         progress=context.progress,
     )
+    context.media.return_deformer(solved.rest, keep_volume, deformer)
     memory[("imitation", character)] = result
     return Animation(result.vertices, result.key_points, result.names, result.report.as_dict())
 

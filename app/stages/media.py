@@ -7,6 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from app.formats import FrameSource, MeshFile, open_images, open_video, read_mesh
 from app.model.values import Clip, MediaRef
 from imitation.errors import InputError
@@ -16,7 +18,12 @@ Locate = Callable[[MediaRef], Path]
 
 
 class Media:
-    """Opens what the document refers to; safe to use from several threads."""
+    """Opens what the document refers to and keeps what stages share; safe to use from several threads.
+
+    Attributes
+    ----------
+    memory : what one run may leave for the next to be quicker; it never changes a result.
+    """
 
     def __init__(self, locate: Locate) -> None:
         self.locate = locate
@@ -24,6 +31,8 @@ class Media:
         self._meshes: dict[str, MeshFile] = {}
         self._rooms: dict[str, Any] = {}
         self._prepared: tuple[tuple[str, int, int], Any] | None = None
+        self._deformer: tuple[Any, bool, Any] | None = None
+        self.memory: dict[Any, Any] = {}
         self._lock = threading.Lock()
 
     def frames(self, clip: Clip) -> FrameSource:
@@ -77,6 +86,24 @@ class Media:
                 self._prepared = (key, ready)
             return self._prepared[1]
 
+    def deformer(self, vertices: Any, faces: Any, keep_volume: bool = False) -> Any:
+        """Give a deformer of this rest mesh; making one costs a factorisation, so the last one is kept.
+
+        A deformer serves one thread at a time, so it is handed out once: give it back with ``return_deformer``.
+        """
+        from imitation.deformation import Deformer
+
+        with self._lock:
+            kept, self._deformer = self._deformer, None
+        if kept is not None and np.array_equal(kept[0], vertices) and kept[1] == keep_volume:
+            return kept[2]
+        return Deformer(vertices, faces, keep_volume=keep_volume)
+
+    def return_deformer(self, vertices: Any, keep_volume: bool, deformer: Any) -> None:
+        """Keep a deformer for the next stage of the same mesh."""
+        with self._lock:
+            self._deformer = (vertices, keep_volume, deformer)
+
     def close(self) -> None:
         """Close all files."""
         with self._lock:
@@ -86,3 +113,5 @@ class Media:
             self._meshes.clear()
             self._rooms.clear()
             self._prepared = None
+            self._deformer = None
+            self.memory.clear()

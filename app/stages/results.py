@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import attrs
 import numpy as np
@@ -49,7 +50,8 @@ class World:
     cameras : the camera path in this world.
     scale, rotation, translation : from the camera solution's own units to this world.
     normal, offset : the ground plane ``normal . x = offset`` in this world, normal up.
-    metric : whether lengths are metres. levelled : whether up is known.
+    metric : whether lengths are metres. levelled : whether up is known. grounded : whether the plane was found.
+    depth : camera z of the subject where no ground is known, None otherwise.
     note : one sentence that says how ground, up and scale were found, and what is unknown.
     """
 
@@ -61,6 +63,8 @@ class World:
     offset: float
     metric: bool
     levelled: bool
+    grounded: bool
+    depth: float | None
     note: str
 
     def camera(self, frame: int) -> Camera:
@@ -102,3 +106,23 @@ class AlignedCharacter:
     rotation: Array
     translation: Array
     note: str
+
+
+@attrs.frozen(eq=False)
+class Animation:
+    """A character's motion.
+
+    Attributes
+    ----------
+    vertices : (n, v, 3) world. key_points : (n, k, 3) places of the paired vertices, in the order of ``tracks``.
+    tracks : ids of the paired tracks.
+    report : the statistics of paper A, Table 1, as plain values.
+    """
+
+    vertices: Array
+    key_points: Array
+    tracks: tuple[str, ...]
+    report: dict[str, Any]
+
+    def __len__(self) -> int:
+        return len(self.vertices)

@@ -1,0 +1,132 @@
+"""Marks by name: what a script or a file says of points, lassos, contacts and pairs (docs/formats.md)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from app.actions import bringing
+from app.actions.session import Session
+from app.model.character import Character
+from app.model.document import Document
+from app.model.edits import characters, contacts, scene, tracks
+from app.model.tracks import Track
+from app.model.world import KnownLength
+from imitation.errors import InputError
+
+
+def track_named(document: Document, name: str) -> Track:
+    """Give the track of this name or id."""
+    for track in document.tracks:
+        if name in (track.name, track.id):
+            return track
+    known = ", ".join(track.name for track in document.tracks) or "none yet"
+    raise InputError(f"There is no track called {name}: the tracks are {known}.")
+
+
+def character_named(document: Document, name: str | None) -> Character:
+    """Give the character of this name or id; without a name the only one."""
+    if name is None and len(document.characters) == 1:
+        return document.characters[0]
+    for character in document.characters:
+        if name in (character.name, character.id):
+            return character
+    known = ", ".join(character.name for character in document.characters) or "none yet"
+    asked = "Which character?" if name is None else f"There is no character called {name}:"
+    raise InputError(f"{asked} The characters are {known}." if name is None else f"{asked} the characters are {known}.")
+
+
+def click_named(session: Session, name: str, frame: int, point: Iterable[float]) -> None:
+    """Click a point: a new track where the name is new, a click or correction of it otherwise."""
+    known = next((track for track in session.document.tracks if name in (track.name, track.id)), None)
+    if known is None:
+        session.apply(tracks.add_track(session.document, frame, point, name=name))
+    else:
+        session.apply(tracks.set_click(session.document, known.id, frame, point))
+
+
+def pair_named(session: Session, character: str | None, track: str, vertex: int) -> None:
+    """Pair a track with a vertex."""
+    found = character_named(session.document, character)
+    session.apply(characters.set_pair(session.document, found.id, track_named(session.document, track).id, vertex))
+
+
+def apply_marks(session: Session, path: Path, *, copy: bool = False) -> None:
+    """Take the marks of a JSON file into the project.
+
+    Raises ``InputError`` when the file is damaged or its marks do not fit the project.
+    """
+    try:
+        body = json.loads(path.read_text())
+    except OSError as error:
+        raise InputError(f"{path} cannot be read ({error.strerror}).") from error
+    except ValueError as error:
+        raise InputError(f"{path} is no JSON file ({error}).") from error
+    if not isinstance(body, dict):
+        raise InputError(f"{path} holds no marks: an object with lassos, tracks or characters was expected.")
+    try:
+        _apply(session, body, path.parent, copy)
+    except (KeyError, TypeError, AttributeError) as error:
+        raise InputError(f"{path} is not as docs/formats.md says ({type(error).__name__}: {error}).") from error
+
+
+def _apply(session: Session, body: Mapping[str, Any], folder: Path, copy: bool) -> None:
+    for frame, lassos in body.get("lassos", {}).items():
+        for lasso in lassos:
+            points = lasso["points"] if isinstance(lasso, Mapping) else lasso
+            subtract = bool(lasso.get("subtract", False)) if isinstance(lasso, Mapping) else False
+            session.apply(scene.add_lasso(session.document, int(frame), points, subtract=subtract))
+    for name, marks in body.get("tracks", {}).items():
+        _apply_track(session, name, marks)
+    for name, marks in body.get("tracks", {}).items():
+        if marks.get("mirror"):
+            track, other = track_named(session.document, name), track_named(session.document, marks["mirror"])
+            session.apply(tracks.set_mirror(session.document, track.id, other.id))
+    camera = body.get("camera", {})
+    if "focal" in camera:
+        session.apply(scene.set_camera(session.document, "solve", focal=camera["focal"]))
+    world = body.get("world", {})
+    if "ground" in world:
+        depth_of = track_named(session.document, world["depth_of"]).id if "depth_of" in world else None
+        session.apply(
+            scene.set_ground(session.document, world["ground"], depth_track=depth_of, depth=world.get("depth"))
+        )
+    if "length" in world:
+        length = world["length"]
+        known = KnownLength(tuple(length["first"]), tuple(length["second"]), float(length["metres"]))
+        session.apply(scene.set_length(session.document, known))
+    for name, marks in body.get("characters", {}).items():
+        _apply_character(session, name, marks, folder, copy)
+
+
+def _apply_track(session: Session, name: str, marks: Mapping[str, Any]) -> None:
+    for frame, point in marks["clicks"].items():
+        click_named(session, name, int(frame), point)
+    track_id = track_named(session.document, name).id
+    for first, last in marks.get("occluded", []):
+        session.apply(tracks.set_occluded(session.document, track_id, first, last, True))
+    for first, _last in marks.get("absent", []):
+        session.apply(tracks.end_track(session.document, track_id, first))
+    for contact in marks.get("contacts", []):
+        first, last = contact[:2]
+        place = contact[2] if len(contact) > 2 else None
+        session.apply(contacts.add_contact(session.document, track_id, first, last, place=place))
+    if "mode" in marks:
+        session.apply(tracks.set_track_mode(session.document, track_id, marks["mode"]))
+
+
+def _apply_character(session: Session, name: str, marks: Mapping[str, Any], folder: Path, copy: bool) -> None:
+    known = next((each for each in session.document.characters if each.name == name), None)
+    if known is None:
+        if "mesh" not in marks:
+            raise InputError(f"The character {name} has no mesh: name its file.")
+        bringing.add_character(session, folder / marks["mesh"], name=name, up=marks.get("up"), copy=copy)
+    character = character_named(session.document, name)
+    for track, vertex in marks.get("pairs", {}).items():
+        pair_named(session, character.id, track, int(vertex))
+    if marks.get("alignment"):
+        session.apply(characters.set_alignment(session.document, character.id, **marks["alignment"]))
+    if marks.get("solve"):
+        session.apply(characters.set_solve(session.document, character.id, **marks["solve"]))
