@@ -49,6 +49,7 @@ class WorldChoice:
         points (the paper's rabbit), "depth" keeps one track at a constant depth (its salamander).
     plane_points : the selected points for "plane", in the camera solution's own units; empty takes all points.
     depth_track : the track of constant depth for "depth"; depth its depth, None takes 1.
+    from_above : the camera looks down on the subject, so that up is towards it; else it is held level.
     length : a known length that makes the world metric.
     """
 
@@ -56,5 +57,6 @@ class WorldChoice:
     plane_points: tuple[Point3, ...] = ()
     depth_track: str | None = None
     depth: float | None = None
+    from_above: bool = False
     length: KnownLength | None = None
     unknown: Unknown = attrs.field(factory=FrozenMap, repr=False)

@@ -65,10 +65,11 @@ def _cameras(context: Context, inputs: tuple[Clip, CameraChoice], masks: Masks |
 def _static(clip: Clip, focal: float | None) -> CameraPath:
     guessed = focal or 1.2 * max(clip.width, clip.height)
     K = np.array([[guessed, 0, (clip.width - 1) / 2], [0, guessed, (clip.height - 1) / 2], [0, 0, 1.0]])
+    level = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
     count = clip.frame_count
-    reason = "The camera was said to stand still: depth, up and scale are unknown."
+    reason = "The camera was said to stand still: depth and scale are unknown."
     return CameraPath(
-        np.tile(K, (count, 1, 1)), np.tile(np.eye(3), (count, 1, 1)), np.zeros((count, 3)), "static", reason=reason
+        np.tile(K, (count, 1, 1)), np.tile(level, (count, 1, 1)), np.zeros((count, 3)), "static", reason=reason
     )
 
 

@@ -127,6 +127,12 @@ def set_ground(
     return Edit(attrs.evolve(document, world=world), words[kind])
 
 
+def set_from_above(document: Document, from_above: bool) -> Edit:
+    """Say whether the camera looks down on the subject."""
+    label = "Film from above" if from_above else "Film from the side"
+    return Edit(attrs.evolve(document, world=attrs.evolve(document.world, from_above=from_above)), label)
+
+
 def set_length(document: Document, length: KnownLength | None) -> Edit:
     """Say how long the distance between two places is, or forget it."""
     if length is not None:

@@ -1,0 +1,134 @@
+"""From the cameras' own world to the user's: what is up, where the ground lies, how long a metre is."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+
+from app.model.tracks import Contact
+from app.model.world import WorldChoice
+from app.stages.results import Array, PlacedContact, World
+from imitation import CameraPath
+from imitation.errors import InputError, NoSolution
+
+ASSUMED_DEPTH = 5.0
+LEVEL = np.cos(np.radians(15))
+"""A fitted ground that leans more than this from a level camera's up is taken for a slope, not for the horizon."""
+
+
+def make_world(choice: WorldChoice, path: CameraPath) -> World:
+    """Level the world on its ground, put the ground at height 0, scale it by a known length.
+
+    Raises ``InputError`` when the user's choice does not fit the cameras.
+    """
+    if path.verdict == "failed":
+        raise InputError(f"The cameras could not be solved: {path.reason}")
+    from imitation.cameras import world_from_ground
+
+    plane, found = _plane(choice, path)
+    length = None
+    if choice.length is not None:
+        length = (choice.length.first, choice.length.second, choice.length.metres)
+    depth = None
+    if plane is not None:
+        scale, rotation, translation = world_from_ground(plane, path, length=length)
+    else:
+        scale = 1.0 if length is None else length[2] / float(np.linalg.norm(np.subtract(length[1], length[0])))
+        rotation, translation = (_looking_down(path) if choice.from_above else np.eye(3)), np.zeros(3)
+        depth = choice.depth or ASSUMED_DEPTH
+    cameras = path.transformed(scale, rotation, translation)
+    normal = np.array([0.0, 0.0, 1.0])
+    notes = [found, "in metres" if length else "the scale is unknown", path.reason]
+    return World(
+        cameras,
+        scale,
+        rotation,
+        translation,
+        normal,
+        0.0,
+        metric=length is not None,
+        levelled=plane is not None or choice.from_above or path.verdict in ("ok", "planar", "rotation"),
+        grounded=plane is not None,
+        depth=depth,
+        note="; ".join(note for note in notes if note),
+    )
+
+
+def place_contact(
+    contact: Contact, name: str, track: Any, choice: WorldChoice, world: World, path: CameraPath
+) -> PlacedContact:
+    """Put a contact where its point's rays meet the ground (paper A, 3.2); it stands still, so the mean place counts.
+
+    Raises ``InputError`` when the track is not there during the contact, or no ray meets a ground.
+    """
+    first, last = contact.span.first, contact.span.last
+    if contact.place is not None:
+        return PlacedContact(first, last, np.array(contact.place), "as given", 0.0)
+    frames = [t for t in range(first, last + 1) if np.isfinite(track.positions[t]).all()]
+    if not frames:
+        raise InputError(
+            f"{name} is not in the picture in frames {first}-{last}, where it is said to touch the ground: "
+            "move the contact or click the point there."
+        )
+    middle = frames[len(frames) // 2]
+    ground = _ground(choice, world, middle, track.positions[middle], name)
+    places = []
+    for frame in frames:
+        try:
+            places.append(ground.intersect(world.cameras[frame], track.positions[frame]))
+        except NoSolution:
+            continue
+    if not places:
+        raise InputError(
+            f"{name} does not meet the ground in frames {first}-{last} ({ground.name}): "
+            "choose another ground, or say where it touches."
+        )
+    return PlacedContact(first, last, np.median(np.array(places), axis=0), ground.name, float(ground.residual))
+
+
+def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
+    """Give the ground plane in the cameras' world, None where there is none, and how it was found."""
+    from imitation.cameras import plane_ground
+
+    if choice.ground == "depth":
+        return None, "a constant depth is assumed"
+    if choice.ground == "plane" and choice.plane_points:
+        ground = plane_ground(choice.plane_points)
+        return ground.plane, ground.name
+    if len(path.points) < 3:
+        if choice.ground == "plane":
+            raise InputError("There are no recovered points to lay a plane through: assume a constant depth instead.")
+        return None, "no ground is known, a constant depth is assumed"
+    try:
+        ground = plane_ground(path.points, up=(0.0, 0.0, 1.0), selected=False)
+    except NoSolution:
+        return None, "no level ground was found, a constant depth is assumed"
+    assert ground.plane is not None
+    if ground.plane.normal[2] < LEVEL:
+        # A slope or a flight of stairs: keep the camera's idea of up, and the slope's height under its points.
+        height = float(np.percentile(path.points[ground.plane.used, 2], 5))
+        level = attrs.evolve(ground.plane, normal=np.array([0.0, 0.0, 1.0]), offset=height)
+        return level, f"{ground.name}, which slopes"
+    return ground.plane, ground.name
+
+
+def _ground(choice: WorldChoice, world: World, frame: int, pixel: Array, name: str) -> Any:
+    from imitation.cameras import Ground, Plane, constant_depth, local_ground
+
+    if world.depth is not None:
+        return constant_depth(world.depth)
+    plane = Ground("the ground plane", plane=Plane(world.normal, world.offset))
+    if choice.ground == "plane":
+        return plane
+    try:
+        return local_ground(world.cameras.points, world.cameras, frame, pixel, up=world.normal)
+    except NoSolution as reason:
+        return attrs.evolve(plane, name=f"the ground plane, for {str(reason)[0].lower()}{str(reason)[1:].rstrip('.')}")
+
+
+def _looking_down(path: CameraPath) -> Array:
+    """The rotation that makes the direction towards the first camera the world's up, picture up the world's +Y."""
+    right, down, forward = path.R[0]
+    return np.stack([right, -down, -forward])
