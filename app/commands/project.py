@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from app.actions import bringing, marks
+from app.actions import bringing, marks, masking
 from app.actions.overview import overview
 from app.actions.session import Session
 from app.commands.console import Console
@@ -57,10 +57,13 @@ def new(
 @click.option("--character", "meshes", type=PATH, multiple=True, help="Add a character.")
 @click.option("--up", type=click.Choice(["x", "y", "z"]), help="The up axis of the added characters.")
 @click.option("--marks", "marks_file", type=PATH, help="Take lassos, clicks, contacts and pairs from a file.")
+@click.option("--masks", "mask_folder", type=PATH, help="Take masks from a folder of pictures, one a frame.")
+@click.option("--masks-every", type=int, default=1, help="Use only each so manieth of them.")
 @click.option("--focal", type=float, help="Focal length, pixels.")
 @click.option("--static", is_flag=True, help="The camera stands still.")
 @click.option("--camera-file", type=PATH, help="Read cameras: a COLMAP model folder or transforms.json.")
 @click.option("--ground", type=click.Choice(["local", "plane", "depth"]), help="Where contacts lie.")
+@click.option("--from-above", is_flag=True, help="The camera looks down on the subject.")
 @click.option("--depth-of", help="Track kept at constant depth, with --ground depth.")
 @click.option("--depth", type=float, help="That depth, metres.")
 @click.option(
@@ -86,6 +89,8 @@ def set_(console: Console, project: Path, **options: Any) -> None:
             session.apply(
                 scene.set_ground(session.document, options["ground"], depth_track=depth_of, depth=options["depth"])
             )
+        if options["from_above"]:
+            session.apply(scene.set_from_above(session.document, True))
         for name, frame, x, y in options["clicks"]:
             marks.click_named(session, name, frame, (x, y))
         for name, first, last in options["marked"]:
@@ -109,6 +114,8 @@ def _set_media(session: Session, options: dict[str, Any]) -> None:
         bringing.add_character(session, mesh, up=options["up"], copy=copy)
     if options["marks_file"] is not None:
         marks.apply_marks(session, options["marks_file"], copy=copy)
+    if options["mask_folder"] is not None:
+        masking.import_masks(session, options["mask_folder"], every=options["masks_every"])
     if options["camera_file"] is not None:
         bringing.use_camera_file(session, options["camera_file"], copy=copy)
 
