@@ -25,6 +25,7 @@ class FrameLoader(QObject):
     """
 
     loaded = Signal(int, object)
+    also_ready = Signal(int)
     thumbnail_ready = Signal(int)
     failed = Signal(str)
 
@@ -39,6 +40,7 @@ class FrameLoader(QObject):
         self._bytes = 0
         self._thumbnails: dict[int, QImage] = {}
         self._thumbnail_wishes: list[int] = []
+        self._also: list[int] = []
         self.decoded = 0
         self._thread = threading.Thread(target=self._serve, name="frames", daemon=True)
         self._thread.start()
@@ -59,6 +61,12 @@ class FrameLoader(QObject):
         """Give the frame's picture if it is there, and ask for nothing."""
         with self._wake:
             return self._kept.get(frame)
+
+    def also(self, frames: list[int]) -> None:
+        """Wish for pictures of other frames; ``also_ready`` says when each is there, after the frame shown."""
+        with self._wake:
+            self._also = [frame for frame in frames if frame not in self._kept]
+            self._wake.notify()
 
     def thumbnail(self, frame: int) -> QImage | None:
         """Give a small picture if it is there; else ``thumbnail_ready`` says when, decoded when nothing else is."""
@@ -113,6 +121,8 @@ class FrameLoader(QObject):
                 if self._wanted is not None:
                     frame, self._wanted = self._wanted, None
                     return "wanted", frame
+                if self._also:
+                    return "also", self._also.pop(0)
                 near = self._to_prefetch()
                 if near is not None:
                     return "near", near
@@ -150,6 +160,8 @@ class FrameLoader(QObject):
         self._keep(frame, picture)
         if kind == "wanted":
             self._say(self.loaded, frame, picture)
+        elif kind == "also":
+            self._say(self.also_ready, frame)
 
     def _say(self, signal: Any, *values: object) -> None:
         if not self._closing:

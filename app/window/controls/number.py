@@ -190,8 +190,9 @@ class NumberField(QLineEdit):
             self.changed.emit(self._value)
 
     def event(self, event: QEvent) -> bool:
-        """Keep single letters in the field while a number is typed."""
-        if event.type() == QEvent.Type.ShortcutOverride and not self.isReadOnly():
+        """Keep single letters in the field while a number is typed, and the keys that step it."""
+        own = isinstance(event, QKeyEvent) and event.key() in (Qt.Key.Key_Up, Qt.Key.Key_Down)
+        if event.type() == QEvent.Type.ShortcutOverride and (own or not self.isReadOnly()):
             event.accept()
             return True
         return super().event(event)

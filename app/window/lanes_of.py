@@ -1,0 +1,136 @@
+"""The lanes of a project: what the document holds and how far its results are, as plain values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.model.character import Character
+from app.model.tracks import Track
+from app.stages.stage import Stage
+from app.window.project import Project
+from app.window.timeline import Bar, Diamond, Lane, Row
+
+DOUBT = 0.5
+STATE_COLOURS = {"fresh": "ok", "running": "accent", "stale": "warn", "failed": "err", "missing": "line2"}
+VIDEO_LEGEND = (
+    ("click, mask", "text", "diamond"),
+    ("being solved", "accent", "bar"),
+    ("waiting", "warn", "bar"),
+    ("low confidence", "text2", "hatch"),
+    ("contact", "contact", "bar"),
+)
+CHARACTER_LEGEND = (
+    ("pose edit", "edit", "diamond"),
+    ("up to date", "ok", "bar"),
+    ("being solved", "accent", "bar"),
+    ("waiting", "warn", "bar"),
+    ("contact", "contact", "bar"),
+)
+
+
+def video_lanes(project: Project) -> list[Lane]:
+    """Pictures and masks, tracks, contacts."""
+    return [_pictures(project), _tracks(project, 8), _contacts(project)]
+
+
+def character_lanes(project: Project, solved: NDArray[np.bool_] | None) -> list[Lane]:
+    """Tracks, contacts, edited poses, and how far the solution is (``solved``: frames that have streamed in)."""
+    lanes = [_tracks(project, 6), _contacts(project)]
+    character = next((each for each in project.document.characters if each.id == project.character_id), None)
+    if character is not None:
+        lanes += [_poses(project, character), _solution(project, character, solved)]
+    return lanes
+
+
+def _pictures(project: Project) -> Lane:
+    masks = tuple(Diamond(frame) for frame in project.document.masks)
+    last = max(project.frame_count - 1, 0)
+    row = Row("masks", (Bar(0, last, "line2", "dim"),) if masks else (), masks)
+    title = f"Video, {len(masks)} mask{'s' if len(masks) != 1 else ''}" if masks else "Video"
+    return Lane("video", title, "video", (row,) if masks else (), 12, 1, thumbnails=True)
+
+
+def _tracks(project: Project, shown: int) -> Lane:
+    rows = tuple(_track_row(project, track) for track in project.document.tracks)
+    count = len(rows)
+    title = f"Points, {shown} of {count}" if count > shown else f"Points, {count}"
+    return Lane("tracks", title, "tracks", rows, 9, shown)
+
+
+def _track_row(project: Project, track: Track) -> Row:
+    colour = _track_colour(track)
+    clicks = tuple(Diamond(frame) for frame in track.clicks)
+    bars: list[Bar] = []
+    for stage in project.session.stages.spans(track.id):
+        bars += _span_bars(project, stage, colour)
+    return Row(track.id, tuple(bars), clicks, selected=track.id == project.track_id)
+
+
+def _track_colour(track: Track) -> str:
+    from app.window import theme
+
+    tracks = theme.active().tracks
+    return tracks[track.colour % len(tracks)]
+
+
+def _span_bars(project: Project, stage: Stage, colour: str) -> list[Bar]:
+    state = project.state(stage)
+    if state != "fresh":
+        ends = stage.name.rsplit("/", 1)[-1].split("-")
+        if len(ends) != 2 or not all(end.isdigit() for end in ends):
+            return []
+        token = {"running": "accent", "failed": "err"}.get(state, "warn")
+        return [Bar(int(ends[0]), int(ends[1]), token)]
+    span = project.result(stage)
+    return [] if span is None else span_bars(span, colour)
+
+
+def span_bars(span: Any, colour: str) -> list[Bar]:
+    """A solved span as bars: solid where it is sure, hatched where it is not, dim where the point is hidden."""
+    confidence, state = np.asarray(span.confidence), np.asarray(span.state)
+    code = np.where(state == "outside", 3, np.where(state == "occluded", 2, np.where(confidence < DOUBT, 1, 0)))
+    edges = np.flatnonzero(np.diff(code)) + 1
+    styles = ("solid", "hatch", "dim")
+    first = int(span.plan.first)
+    return [
+        Bar(first + int(begin), first + int(end), colour, styles[code[begin]])
+        for begin, end in zip((0, *edges), (*edges, len(code) - 1), strict=True)
+        if code[begin] < 3
+    ]
+
+
+def _contacts(project: Project) -> Lane:
+    rows = []
+    for track in project.document.tracks:
+        if track.contacts:
+            bars = tuple(Bar(each.span.first, each.span.last, "contact") for each in track.contacts)
+            rows.append(Row(track.id, bars))
+    return Lane("contacts", f"Contacts, {sum(len(row.bars) for row in rows)}", "contact", tuple(rows), 8, 6)
+
+
+def _poses(project: Project, character: Character) -> Lane:
+    marks = tuple(
+        Diamond(frame, "edit", frame == project.frame or not any(move.muted for move in edit.moves.values()))
+        for frame, edit in character.edits.items()
+    )
+    last = max(project.frame_count - 1, 0)
+    row = Row("poses", (Bar(0, last, "edit", "dim"),) if marks else (), marks)
+    return Lane("poses", f"Pose edits, {len(marks)}", "pose", (row,), 22, 1, padding=2)
+
+
+def _solution(project: Project, character: Character, solved: NDArray[np.bool_] | None) -> Lane:
+    last = max(project.frame_count - 1, 0)
+    stage = project.session.stages.animation(character.id)
+    state = project.state(stage)
+    bars: list[Bar] = []
+    if state == "running" and solved is not None and solved.any():
+        edges = np.flatnonzero(np.diff(solved)) + 1
+        for begin, end in zip((0, *edges), (*edges, len(solved) - 1), strict=True):
+            bars.append(Bar(int(begin), int(end), "accent" if solved[begin] else "warn"))
+    elif state != "blocked":
+        texts = {"fresh": "up to date", "stale": "waiting", "running": "being solved", "failed": "failed"}
+        bars.append(Bar(0, last, STATE_COLOURS.get(state, "line2"), text=texts.get(state, "not solved yet")))
+    return Lane("solution", "Solution", "solution", (Row("solution", tuple(bars)),), 22, 1, padding=2)

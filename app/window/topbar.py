@@ -1,0 +1,139 @@
+"""The bar at the top: the project and whether it is saved, the workspaces, undo, running work, export."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QProgressBar, QToolButton, QWidget
+
+from app.window import icons
+from app.window.controls import Elided, button, icon_button, label
+from app.window.keys import COMMANDS, shown_key
+from app.window.project import Project
+
+
+class TopBar(QWidget):
+    """Says what is open and what runs; ``wanted`` names the command that is asked for."""
+
+    wanted = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("topBar")
+        self.setAttribute(Qt.WidgetAttribute.WA_StyledBackground)
+        self.setFixedHeight(48)
+        grid = QGridLayout(self)
+        grid.setContentsMargins(12, 0, 12, 0)
+        grid.setHorizontalSpacing(16)
+        for column, stretch in enumerate((1, 0, 1)):
+            grid.setColumnStretch(column, stretch)
+        grid.addLayout(self._left(), 0, 0)
+        grid.addLayout(self._tabs(), 0, 1)
+        grid.addLayout(self._right(), 0, 2)
+
+    def _left(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        mark = QLabel()
+        mark.setPixmap(icons.application_icon().pixmap(QSize(24, 24)))
+        self.menu_button = QToolButton()
+        self.menu_button.setIcon(icons.icon("menu"))
+        self.menu_button.setIconSize(QSize(18, 18))
+        self.menu_button.setFixedSize(30, 28)
+        self.menu_button.setToolTip("Project menu")
+        self.menu_button.setAccessibleName("Project menu")
+        self.menu_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.menu_button.setStyleSheet("QToolButton::menu-indicator { image: none; }")
+        self.menu_button.setMenu(self._menu())
+        self.name = label("", "title")
+        self.state = Elided("", "caption")
+        row.addWidget(mark)
+        row.addWidget(label("Motionwright", "brand"))
+        row.addWidget(self.menu_button)
+        row.addWidget(self.name)
+        row.addWidget(self.state, 1)
+        return row
+
+    def _menu(self) -> QMenu:
+        menu = QMenu(self)
+        for command in COMMANDS:
+            if command.group == "Project" or command.id in ("light", "keys"):
+                if command.id in ("add_clip", "light", "export"):
+                    menu.addSeparator()
+                action = menu.addAction(command.text, lambda id_=command.id: self.wanted.emit(id_))
+                key = shown_key(command.id)
+                action.setText(f"{command.text}\t{key}" if key else command.text)
+        return menu
+
+    def _tabs(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(4)
+        self.tabs = {}
+        for name, text in (("video", "Video"), ("character", "Character")):
+            tab = QToolButton()
+            tab.setProperty("tab", "true")
+            tab.setIcon(icons.icon(name))
+            tab.setIconSize(QSize(16, 16))
+            tab.setText(text)
+            tab.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+            tab.setCheckable(True)
+            tab.setAutoExclusive(True)
+            tab.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            tab.setToolTip(f"{text}  ({shown_key(name)})")
+            tab.clicked.connect(lambda _=False, name=name: self.wanted.emit(name))
+            self.tabs[name] = tab
+            row.addWidget(tab)
+        return row
+
+    def _right(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        row.addStretch(1)
+        self.undo = icon_button("undo", "Undo", lambda: self.wanted.emit("undo"), shown_key("undo"))
+        self.redo = icon_button("redo", "Redo", lambda: self.wanted.emit("redo"), shown_key("redo"))
+        self.job = QWidget()
+        inner = QHBoxLayout(self.job)
+        inner.setContentsMargins(8, 0, 0, 0)
+        inner.setSpacing(8)
+        self.job_text = label("", "label")
+        self.job_bar = QProgressBar()
+        self.job_bar.setRange(0, 1000)
+        self.job_bar.setTextVisible(False)
+        self.job_bar.setFixedWidth(88)
+        inner.addWidget(self.job_text)
+        inner.addWidget(self.job_bar)
+        inner.addWidget(
+            icon_button("cancel", "Cancel the running work", lambda: self.wanted.emit("cancel_work"), "Esc")
+        )
+        self.job.hide()
+        for widget in (self.job, self.undo, self.redo):
+            row.addWidget(widget)
+        self.export = button("Export", lambda: self.wanted.emit("export"), name="export")
+        self.export.setToolTip(f"Meshes, video and cameras for other programs  ({shown_key('export')})")
+        row.addWidget(self.export)
+        return row
+
+    def show_workspace(self, name: str) -> None:
+        """Mark the tab of the workspace shown."""
+        self.tabs[name].setChecked(True)
+
+    def show_document(self, project: Project) -> None:
+        """Show name, save state and what undo would do."""
+        history = project.session.history
+        self.name.setText(project.document.name)
+        saved = "unsaved changes" if history.modified else "saved"
+        state = saved if project.session.titled else "not saved yet"
+        self.state.setText(f"·  {state}")
+        for widget, verb, what in ((self.undo, "Undo", history.undo_label), (self.redo, "Redo", history.redo_label)):
+            widget.setEnabled(what is not None)
+            key = shown_key(verb.lower())
+            widget.setToolTip(f"{verb}: {what}  ({key})" if what else f"Nothing to {verb.lower()}")
+
+    def show_work(self, project: Project) -> None:
+        """Show the job that has been running longest, and how many more there are."""
+        jobs = list(project.progress.values())
+        self.job.setVisible(bool(jobs))
+        if jobs:
+            fraction, text = jobs[0]
+            more = f"  +{len(jobs) - 1}" if len(jobs) > 1 else ""
+            self.job_text.setText(f"{text}{more}  {100 * fraction:.0f} %")
+            self.job_bar.setValue(round(1000 * fraction))

@@ -1,0 +1,5 @@
+"""The Video workspace."""
+
+from app.window.video.workspace import VideoWorkspace
+
+__all__ = ["VideoWorkspace"]

@@ -1,0 +1,98 @@
+"""What gestures in the Video workspace mean: edits of the document."""
+
+from __future__ import annotations
+
+from app.model.document import Document
+from app.model.edits import contacts, scene, tracks
+from app.window.project import Project
+from app.window.reading import Reading
+from app.window.video.layers import Shown
+
+Place = tuple[float, float]
+
+
+def add_point(project: Project, frame: int, place: Place) -> None:
+    """Begin a track with a click and select it."""
+    known = {track.id for track in project.document.tracks}
+    if project.edit(tracks.add_track, frame, place):
+        project.select_track(next(track.id for track in project.document.tracks if track.id not in known))
+
+
+def correct(project: Project, track_id: str, frame: int, place: Place) -> None:
+    """Put a track's point somewhere in a frame."""
+    project.edit(tracks.set_click, track_id, frame, place)
+
+
+def nudge(project: Project, reading: Reading | None, frame: int, dx: float, dy: float) -> None:
+    """Move the selected point by a fraction of a pixel; strokes in a row are one entry."""
+    track = next((each for each in project.document.tracks if each.id == project.track_id), None)
+    if track is None or reading is None:
+        return
+    x, y = track.clicks.get(frame) or reading.track(track).positions[frame]
+    if x == x:
+        place = (float(x) + dx, float(y) + dy)
+        project.edit(tracks.set_click, track.id, frame, place, gesture=f"nudge {track.id} {frame}")
+
+
+def draw_mask(project: Project, frame: int, points: tuple[Place, ...], mode: str) -> None:
+    """Add a lasso to the mask of a frame, take one away from it, or begin it anew: one entry."""
+    gesture = f"lasso {id(points)}"
+    if mode == "new" and frame in project.document.masks:
+        project.edit(scene.remove_mask, frame, gesture=gesture)
+    project.edit(scene.add_lasso, frame, points, subtract=mode == "subtract", gesture=gesture)
+    project.close_gesture()
+
+
+def mark_contact(
+    project: Project, track_id: str, frame: int, start: tuple[str, int] | None
+) -> tuple[tuple[str, int] | None, str]:
+    """Two marks make a contact; a click inside one removes it. Gives the open mark and what to do next."""
+    track = project.document.track(track_id)
+    if start is not None and start[0] == track_id:
+        project.edit(contacts.add_contact, track_id, start[1], frame)
+        return None, ""
+    if any(frame in contact.span for contact in track.contacts):
+        project.edit(contacts.remove_contact, track_id, frame)
+        return None, ""
+    return (track_id, frame), f"Contact of {track.name} begins at frame {frame}: click it in the last such frame."
+
+
+def delete(project: Project, frame: int) -> None:
+    """Delete the click of this frame, or the track where it has no other."""
+    track = next((each for each in project.document.tracks if each.id == project.track_id), None)
+    if track is None:
+        if frame in project.document.masks:
+            project.edit(scene.remove_mask, frame)
+    elif frame in track.clicks and len(track.clicks) > 1:
+        project.edit(tracks.remove_click, track.id, frame)
+    else:
+        project.edit(tracks.delete_track, track.id)
+
+
+def next_track(project: Project) -> None:
+    """Select the track after the selected one."""
+    ids = [track.id for track in project.document.tracks]
+    if ids:
+        number = ids.index(project.track_id) + 1 if project.track_id in ids else 0
+        project.select_track(ids[number % len(ids)])
+
+
+def keep_old_paths(shown: Shown, reading: Reading, before: Document, after: Document) -> None:
+    """Remember the paths of tracks whose clicks change, to show them until the new ones are there."""
+    was = {track.id: track for track in before.tracks}
+    kept = dict(shown.before)
+    for track in after.tracks:
+        old = was.get(track.id)
+        if old is not None and old.clicks != track.clicks and track.id not in kept:
+            known = reading.last(track.id)
+            if known is not None and known.complete:
+                kept[track.id] = known.positions
+    ids = {track.id for track in after.tracks}
+    shown.before = {track_id: path for track_id, path in kept.items() if track_id in ids}
+
+
+def drop_old_paths(shown: Shown, reading: Reading, project: Project) -> None:
+    """Forget old paths of tracks that are solved again."""
+    if shown.before:
+        done = {track.id for track in project.document.tracks if reading.track(track).complete}
+        shown.before = {track_id: path for track_id, path in shown.before.items() if track_id not in done}

@@ -1,0 +1,189 @@
+"""What is known of the selected point and what can be done with it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
+
+from app.model.edits import contacts, tracks
+from app.model.tracks import Track
+from app.window.controls import Chip, Elided, Meter, Row, ScrollColumn, Swatches, button, icon_button, label, separator
+from app.window.lanes_of import DOUBT
+from app.window.project import Project
+from app.window.reading import KnownTrack
+
+SHOWN_SPANS = 7
+
+
+class TrackInspector(ScrollColumn):
+    """Shows one track; every change is an edit of the document."""
+
+    go = Signal(int)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.project: Project | None = None
+        self.track: Track | None = None
+        self.nothing = label(
+            "Choose a point in the picture or in the timeline, or add one with the Point tool.", "label"
+        )
+        self.nothing.setWordWrap(True)
+        self.rows.addWidget(self.nothing)
+        self.body = QWidget()
+        column = QVBoxLayout(self.body)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        self.name = QLineEdit()
+        self.name.setAccessibleName("Name of the point")
+        self.name.editingFinished.connect(self._rename)
+        self.colours = Swatches()
+        self.colours.chosen.connect(lambda index: self._edit(tracks.set_track_look, colour=index))
+        self.meter = Meter()
+        self.sure = label("", "value")
+        self.sure.setFixedWidth(34)
+        column.addWidget(Row("Name", self.name))
+        column.addWidget(Row("Colour", self.colours))
+        meter = Row("Confidence", self.meter)
+        meter.layout().addWidget(self.sure)
+        column.addWidget(meter)
+        column.addWidget(separator())
+        self.table = SpanTable()
+        self.table.go.connect(self.go)
+        column.addWidget(self.table)
+        self.suggest = button("Go to the frame that needs a click most", self._suggest, name="go")
+        column.addWidget(self.suggest)
+        column.addWidget(separator())
+        column.addLayout(self._actions())
+        self.rows.addWidget(self.body)
+        self.rows.addStretch(1)
+        self.show_track(None, None, 0)
+
+    def _actions(self) -> QGridLayout:
+        grid = QGridLayout()
+        grid.setSpacing(8)
+        self.remove = button("Remove this click", lambda: self._edit(tracks.remove_click, self._frame()))
+        self.end = button("End here", lambda: self._edit(tracks.end_track, self._frame()))
+        self.hide_ = button("Hidden here", self._toggle_hidden)
+        self.contact = button("Remove contact", lambda: self._edit(contacts.remove_contact, self._frame()))
+        self.visible_ = button("Do not draw", self._toggle_drawn)
+        self.delete = button("Delete point", lambda: self._edit(tracks.delete_track))
+        for number, each in enumerate((self.remove, self.end, self.hide_, self.contact, self.visible_, self.delete)):
+            grid.addWidget(each, number // 2, number % 2)
+        return grid
+
+    def show_track(self, project: Project | None, known: KnownTrack | None, frame: int) -> None:
+        """Show the selected track of a project as far as it is known, in a frame."""
+        self.project = project
+        found = [each for each in project.document.tracks if each.id == project.track_id] if project else []
+        self.track = found[0] if found else None
+        self.nothing.setVisible(self.track is None)
+        self.body.setVisible(self.track is not None)
+        if self.track is None or project is None or known is None:
+            return
+        track = self.track
+        if not self.name.hasFocus():
+            self.name.setText(track.name)
+        self.colours.set_index(track.colour)
+        sure = float(known.confidence[frame]) if frame < len(known.confidence) else 0.0
+        self.meter.show_value(sure, "ok" if sure >= DOUBT else "warn", DOUBT)
+        self.sure.setText(f"{sure:.2f}" if known.state[frame] else "–")
+        self.table.show_spans(project, track, frame)
+        clicked = frame in track.clicks
+        hidden = any(frame in interval for interval in track.occluded)
+        self.remove.setEnabled(clicked and len(track.clicks) > 1)
+        self.end.setEnabled(not clicked and frame > min(track.clicks))
+        self.hide_.setText("Not hidden here" if hidden else "Hidden here")
+        self.contact.setEnabled(any(frame in contact.span for contact in track.contacts))
+        self.visible_.setText("Do not draw" if track.visible else "Draw again")
+        self.suggest.setEnabled(known.complete)
+
+    def _frame(self) -> int:
+        return self.project.frame if self.project else 0
+
+    def _edit(self, make: object, *values: object, **options: object) -> None:
+        if self.project is not None and self.track is not None:
+            self.project.edit(make, self.track.id, *values, **options)  # type: ignore[arg-type]
+
+    def _rename(self) -> None:
+        if self.track is not None and self.name.text().strip() != self.track.name:
+            self._edit(tracks.rename_track, self.name.text())
+            if self.track is not None:
+                self.name.setText(self.track.name)
+
+    def _toggle_hidden(self) -> None:
+        if self.track is not None:
+            hidden = any(self._frame() in interval for interval in self.track.occluded)
+            self._edit(tracks.set_occluded, self._frame(), self._frame(), not hidden)
+
+    def _toggle_drawn(self) -> None:
+        if self.track is not None:
+            self._edit(tracks.set_track_look, visible=not self.track.visible)
+
+    def _suggest(self) -> None:
+        if self.project is None or self.track is None:
+            return
+        found = self.project.result(self.project.session.stages.track(self.track.id))
+        if found is not None:
+            from imitation.tracking import suggest_correction
+
+            self.go.emit(int(suggest_correction(found)))
+
+
+class SpanTable(QWidget):
+    """The spans round the present frame: frames, lowest confidence, state; a click goes there."""
+
+    go = Signal(int)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.column = QVBoxLayout(self)
+        self.column.setContentsMargins(0, 0, 0, 0)
+        self.column.setSpacing(2)
+        head = QHBoxLayout()
+        for text, stretch in (("Span", 5), ("Surest to least", 5), ("State", 4)):
+            head.addWidget(label(text, "caption"), stretch)
+        self.column.addLayout(head)
+        self._lines: list[tuple[QWidget, Elided, Elided, Chip]] = []
+        for _ in range(SHOWN_SPANS):
+            line = QWidget()
+            row = QHBoxLayout(line)
+            row.setContentsMargins(0, 0, 0, 0)
+            row.setSpacing(6)
+            frames, sure, state = Elided("", "value"), Elided("", "label"), Chip()
+            row.addWidget(frames, 5)
+            row.addWidget(sure, 4)
+            row.addWidget(state, 0)
+            jump = icon_button("go", "Go to the least sure frame of this span", lambda line=line: self._jump(line))
+            jump.setFixedSize(24, 22)
+            row.addWidget(jump)
+            self._lines.append((line, frames, sure, state))
+            self.column.addWidget(line)
+
+    def _jump(self, line: QWidget) -> None:
+        frame = line.property("frame")
+        if frame is not None:
+            self.go.emit(int(frame))
+
+    def show_spans(self, project: Project, track: Track, frame: int) -> None:
+        """Show the spans nearest to a frame."""
+        stages = project.session.stages.spans(track.id)
+        ranges = [tuple(int(end) for end in stage.name.rsplit("/", 1)[-1].split("-")) for stage in stages]
+        here = next((number for number, (first, last) in enumerate(ranges) if first <= frame <= last), 0)
+        begin = max(min(here - SHOWN_SPANS // 2, len(stages) - SHOWN_SPANS), 0)
+        words = {"fresh": ("solved", "ok"), "running": ("solving", "accent"), "failed": ("failed", "err")}
+        for number, (line, frames, sure, chip) in enumerate(self._lines):
+            index = begin + number
+            line.setVisible(index < len(stages))
+            if index >= len(stages):
+                continue
+            first, last = ranges[index]
+            span = project.result(stages[index])
+            frames.setText(f"{first} – {last}")
+            lowest = first
+            if span is None:
+                sure.setText("")
+            else:
+                lowest = first + int(span.confidence.argmin())
+                sure.setText(f"{span.confidence.max():.2f} – {span.confidence.min():.2f}")
+            line.setProperty("frame", lowest)
+            chip.show_state(*words.get(project.state(stages[index]), ("waiting", "warn")))

@@ -1,0 +1,103 @@
+"""The layers over the picture in the Video workspace, made from the project."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.model.tracks import Track
+from app.window import theme
+from app.window.canvas import GhostPath, Overlay, PointCloudLayer, PolygonLayer, TrackLayer, TrackMark
+from app.window.project import Project
+from app.window.reading import Reading
+
+HIDDEN = {"occluded": "hidden", "outside": "outside", "": "missing"}
+
+
+@dataclass
+class Shown:
+    """What is drawn, and what is under way with the mouse."""
+
+    paths: bool = True
+    masks: bool = True
+    camera: bool = False
+    names: bool = True
+    marks: bool = True
+    hovered: str = ""
+    dragged: tuple[str, tuple[float, float]] | None = None
+    drawing: tuple[tuple[float, float], ...] = ()
+    before: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+
+
+def colour_of(track: Track) -> str:
+    """The colour of a track in the look in use."""
+    tracks = theme.active().tracks
+    return tracks[track.colour % len(tracks)]
+
+
+def track_marks(project: Project, reading: Reading, frame: int, shown: Shown) -> tuple[TrackMark, ...]:
+    """The tracks that are drawn, as values."""
+    marks = []
+    for track in project.document.tracks:
+        if not track.visible:
+            continue
+        known = reading.track(track)
+        word = str(known.state[frame]) if frame < len(known.state) else ""
+        marks.append(
+            TrackMark(
+                track.id,
+                track.name,
+                colour_of(track),
+                known.positions,
+                HIDDEN.get(word, "seen"),
+                clicked=frame in track.clicks,
+                selected=track.id == project.track_id,
+                contact=any(frame in contact.span for contact in track.contacts),
+                place=shown.dragged[1] if shown.dragged and shown.dragged[0] == track.id else None,
+            )
+        )
+    return tuple(marks)
+
+
+def layers(project: Project, marks: tuple[TrackMark, ...], frame: int, shown: Shown) -> list[Overlay]:
+    """All layers, the first at the bottom."""
+    made: list[Overlay] = []
+    if not shown.marks:
+        return made
+    if shown.camera:
+        made.append(_inliers(project, frame))
+    if shown.masks or shown.drawing:
+        made.append(_masks(project, frame, shown))
+    tracks = [track for track in project.document.tracks if track.visible and track.id in shown.before]
+    made += [GhostPath(shown.before[track.id], colour_of(track)) for track in tracks]
+    made.append(TrackLayer(marks, frame, shown.paths, shown.names, shown.hovered))
+    return made
+
+
+def _masks(project: Project, frame: int, shown: Shown) -> PolygonLayer:
+    drawn = project.document.masks.get(frame) if shown.masks else None
+    outlines = tuple((np.array(lasso.points), not lasso.subtract) for lasso in drawn.lassos) if drawn else ()
+    if not outlines and shown.masks and project.document.masks:
+        masks = project.result(project.session.stages.masks)
+        if masks is not None:
+            outlines = tuple((points, False) for points in outline(masks[frame]))
+    return PolygonLayer(outlines, shown.drawing)
+
+
+def outline(mask: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
+    """The borders of a mask (h, w) as polygons (n, 2)."""
+    import cv2
+
+    found, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_TC89_L1)
+    return [line[:, 0].astype(np.float64) for line in found if len(line) >= 8]
+
+
+def _inliers(project: Project, frame: int) -> PointCloudLayer:
+    path = project.result(project.session.stages.cameras)
+    if path is None or not len(path.observations):
+        return PointCloudLayer()
+    rows = path.observations
+    return PointCloudLayer(rows[rows[:, 0] == frame, 1:])

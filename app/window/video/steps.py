@@ -1,0 +1,121 @@
+"""What this project needs next: a short list of steps with their states, and one button."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+
+from app.window import icons
+from app.window.controls import Elided, button, label
+from app.window.project import Project
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step: its state is done, todo, running, stale, failed or optional."""
+
+    title: str
+    text: str
+    state: str
+
+
+ICONS = {
+    "done": ("solution", "ok"),
+    "running": ("run", "accent"),
+    "stale": ("warning", "warn"),
+    "failed": ("error", "err"),
+    "todo": ("point", "text3"),
+    "optional": ("note", "text3"),
+}
+
+
+def steps(project: Project) -> list[Step]:
+    """The steps of a project in order."""
+    document, stages = project.document, project.session.stages
+    masks = len(document.masks)
+    made = [
+        Step("Masks", f"{masks} drawn" if masks else "draw round the subject", "done" if masks else "optional"),
+        _points(project),
+    ]
+    path = project.result(stages.cameras)
+    state = project.state(stages.cameras)
+    if path is not None:
+        text = {"ok": "solved", "static": "stands still", "rotation": "only turns", "planar": "flat scene"}
+        worst = "failed" if path.verdict == "failed" else "done"
+        made.append(Step("Camera", text.get(path.verdict, "failed"), worst))
+    else:
+        made.append(Step("Camera", _words(state), _state(state)))
+    if document.characters:
+        character = document.character(project.character_id) if project.character_id else document.characters[0]
+        pairs = len(character.pairs)
+        paired = "done" if pairs >= 3 else "todo"
+        made.append(Step("Pairs", f"{pairs} of {len(document.tracks)} points", paired))
+        state = project.state(stages.animation(character.id))
+        made.append(Step("Motion", _words(state), _state(state)))
+    else:
+        made.append(Step("Character", "add a mesh", "todo"))
+    return made
+
+
+def _points(project: Project) -> Step:
+    tracks = project.document.tracks
+    if not tracks:
+        return Step("Points", "click some on the subject", "todo")
+    states = [project.state(project.session.stages.track(track.id)) for track in tracks]
+    fresh = states.count("fresh")
+    if fresh == len(states):
+        return Step("Points", f"{fresh} followed", "done")
+    state = "running" if "running" in states else "failed" if "failed" in states else "stale"
+    return Step("Points", f"{fresh} of {len(states)} followed", state)
+
+
+def _state(state: str) -> str:
+    known = {"fresh": "done", "running": "running", "stale": "stale", "failed": "failed"}
+    return known.get(state, "todo")
+
+
+def _words(state: str) -> str:
+    words = {"fresh": "up to date", "running": "being solved", "stale": "out of date", "failed": "failed"}
+    return words.get(state, "waits for the steps above" if state == "blocked" else "not solved yet")
+
+
+class StepList(QWidget):
+    """Shows the steps; ``run`` asks for everything that is missing."""
+
+    run = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(4)
+        self._rows: list[tuple[QLabel, QLabel, Elided]] = []
+        self._shown: list[Step] = []
+        self.button = button("Run what is missing", self.run.emit, primary=True, name="run")
+        self._column.addSpacing(4)
+        self._column.addWidget(self.button)
+
+    def show_steps(self, steps_: list[Step]) -> None:
+        """Show the steps as they stand."""
+        if steps_ == self._shown:
+            return
+        self._shown = steps_
+        while len(self._rows) < len(steps_):
+            row = QHBoxLayout()
+            row.setSpacing(8)
+            widgets = (QLabel(), label("", "value"), Elided("", "label"))
+            widgets[0].setFixedSize(18, 22)
+            widgets[1].setFixedWidth(72)
+            for widget in widgets:
+                row.addWidget(widget)
+            self._column.insertLayout(len(self._rows), row)
+            self._rows.append(widgets)
+        for widgets, step in zip(self._rows, steps_, strict=False):
+            name, token = ICONS[step.state]
+            widgets[0].setPixmap(icons.pixmap(name, token, 16))
+            widgets[1].setText(step.title)
+            widgets[2].setText(step.text)
+        missing = any(step.state in ("todo", "stale", "failed") for step in steps_)
+        self.button.setEnabled(missing)

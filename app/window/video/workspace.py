@@ -1,0 +1,304 @@
+"""The Video workspace: watch, click points, correct them, draw masks, mark contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.model.document import Document
+from app.window.canvas import Canvas
+from app.window.canvas.gestures import Cancelled, Chosen, Drawing, Drawn, Gesture, Moved, Moving, Placed
+from app.window.controls import ErrorBar, Panel, icon_button, label, toggle, tool
+from app.window.frames import FrameLoader
+from app.window.picture_notes import PictureNotes
+from app.window.project import Project
+from app.window.reading import Reading
+from app.window.video import edits_by_mouse
+from app.window.video.inspector import TrackInspector
+from app.window.video.layers import Shown, layers, track_marks
+from app.window.video.point_windows import PointWindows, Window, window_frames
+from app.window.video.steps import StepList, steps
+from app.window.video.tools import HINTS, TOOLS, Tool, gesture_for, track_at
+
+
+class VideoWorkspace(QWidget):
+    """Shows a frame with its marks; what the mouse does becomes edits."""
+
+    hint = Signal(str)
+    run_wanted = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.project: Project | None = None
+        self.reading: Reading | None = None
+        self.loader: FrameLoader | None = None
+        self.shown = Shown()
+        self.frame = 0
+        self.tool: Tool = "select"
+        self.contact_start: tuple[str, int] | None = None
+        self._marks: tuple = ()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(8)
+        row.addWidget(self._strip())
+        row.addWidget(self._middle(), 1)
+        row.addWidget(self._right())
+        self._choose_tool("select")
+
+    # building ----------------------------------------------------------------------------------------------------
+
+    def _strip(self) -> Panel:
+        strip = Panel()
+        strip.setFixedWidth(64)
+        strip.column.setContentsMargins(3, 6, 3, 6)
+        strip.column.setSpacing(4)
+        self.tools = QButtonGroup(self)
+        self.tool_buttons = {}
+        for name, text, key in TOOLS:
+            each = tool(name, text, key)
+            self.tools.addButton(each)
+            self.tool_buttons[name] = each
+            each.clicked.connect(lambda _=False, name=name: self._choose_tool(name))
+            strip.column.addWidget(each, 0, Qt.AlignmentFlag.AlignHCenter)
+        strip.column.addStretch(1)
+        return strip
+
+    def _middle(self) -> Panel:
+        self.panel = Panel("Video", " ")
+        bar = self.panel.header.row
+        self.paths_button = toggle("paths", "Paths", lambda on: self._switch("paths", on), on=True)
+        self.masks_button = toggle("masks", "Masks", lambda on: self._switch("masks", on), on=True)
+        self.names_button = toggle("labels", "Names", lambda on: self._switch("names", on), on=True)
+        self.camera_button = toggle("camera", "Camera", lambda on: self._switch("camera", on))
+        self.magnifier_button = toggle("magnifier", "Magnifier", self._magnify, key="Z")
+        self.zoom = label("100 %", "label")
+        self.zoom.setFixedWidth(44)
+        self.zoom.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self.canvas = Canvas(self._begin)
+        for widget in (
+            self.paths_button,
+            self.masks_button,
+            self.names_button,
+            self.camera_button,
+            self.magnifier_button,
+            self.zoom,
+            icon_button("fit", "Show the whole picture", self.canvas.fit, "F"),
+        ):
+            bar.addWidget(widget)
+        self.errors = ErrorBar()
+        self.panel.column.addWidget(self.errors)
+        inner = QHBoxLayout()
+        inner.setSpacing(0)
+        self.windows = PointWindows()
+        self.windows.chosen.connect(self._go)
+        inner.addWidget(self.canvas, 1)
+        inner.addWidget(self.windows)
+        self.panel.column.addLayout(inner, 1)
+        self.notes = PictureNotes(self.canvas)
+        self.canvas.happened.connect(self._happened)
+        self.canvas.hovered.connect(self._hovered)
+        self.canvas.view_changed.connect(lambda scale: self.zoom.setText(f"{100 * scale:.0f} %"))
+        return self.panel
+
+    def _right(self) -> QWidget:
+        column = QWidget()
+        column.setFixedWidth(304)
+        layout = QVBoxLayout(column)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(8)
+        self.track_panel = Panel("Point")
+        self.inspector = TrackInspector()
+        self.inspector.go.connect(self._go)
+        self.track_panel.column.addWidget(self.inspector, 1)
+        self.steps_panel = Panel("What this project needs")
+        self.steps = StepList()
+        self.steps.run.connect(self.run_wanted)
+        self.steps_panel.column.addWidget(self.steps)
+        self.steps_panel.column.setContentsMargins(1, 1, 1, 1)
+        self.steps.layout().setContentsMargins(12, 0, 12, 12)
+        self.steps_panel.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        layout.addWidget(self.track_panel, 1)
+        layout.addWidget(self.steps_panel)
+        return column
+
+    # showing -----------------------------------------------------------------------------------------------------
+
+    def attach(self, project: Project, loader: FrameLoader | None) -> None:
+        """Take another project."""
+        self.project, self.reading, self.loader = project, Reading(project), loader
+        self.shown.before = {}
+        self.contact_start = None
+        if loader is not None:
+            loader.also_ready.connect(lambda _: self.windows.update())
+            self.windows.picture = loader.peek
+        else:
+            self.canvas.show_picture(QImage())
+        self.refresh()
+
+    def show_picture(self, frame: int, picture: QImage) -> None:
+        """Show a frame; picture and marks change together, so that they never belong to different frames."""
+        self.frame = frame
+        self.canvas.show_picture(picture)
+        self.refresh()
+
+    def document_changed(self, before: Document, after: Document) -> None:
+        """Keep the old paths of tracks that have to be solved again, then show what there is."""
+        if self.reading is not None:
+            edits_by_mouse.keep_old_paths(self.shown, self.reading, before, after)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Show the project as it is."""
+        project, reading = self.project, self.reading
+        if project is None or reading is None:
+            return
+        edits_by_mouse.drop_old_paths(self.shown, reading, project)
+        frame = self.frame
+        self._marks = track_marks(project, reading, frame, self.shown)
+        self.canvas.show_layers(layers(project, self._marks, frame, self.shown))
+        clip = project.document.clip
+        if clip is not None:
+            caption = f"{clip.width} × {clip.height}  ·  {len(project.document.tracks)} points"
+            self.panel.header.caption.setText(caption)
+            self.notes.show_frame(frame, clip.frame_count, frame / max(clip.fps, 1e-9))
+        self.notes.setVisible(clip is not None)
+        self._show_windows()
+        known = next((reading.track(each) for each in project.document.tracks if each.id == project.track_id), None)
+        self.inspector.show_track(project, known, frame)
+        self.steps.show_steps(steps(project))
+        self.canvas.update()
+
+    def _show_windows(self) -> None:
+        project, reading = self.project, self.reading
+        assert project is not None
+        assert reading is not None
+        track = next((each for each in project.document.tracks if each.id == project.track_id), None)
+        if track is None or not project.frame_count:
+            self.windows.show_windows([])
+            return
+        known = reading.track(track)
+        rows = window_frames(track, self.frame, project.frame_count)
+        made = []
+        for frame, caption in rows:
+            x, y = known.positions[frame]
+            place = (float(x), float(y)) if x == x else None
+            note = f"sure {known.confidence[frame]:.2f}" if known.state[frame] else "not solved"
+            clicked = frame in track.clicks
+            now = frame == self.frame
+            made.append(Window(frame, place, caption, "by you" if clicked else note, clicked, now))
+        self.windows.show_windows(made)
+        if self.loader is not None:
+            self.loader.also([frame for frame, _ in rows])
+
+    def _switch(self, name: str, on: bool) -> None:
+        setattr(self.shown, name, on)
+        self.refresh()
+
+    def _magnify(self, on: bool) -> None:
+        self.canvas.magnify = on
+        self.canvas.update()
+
+    def _go(self, frame: int) -> None:
+        if self.project is not None:
+            self.project.show_frame(frame)
+
+    # the mouse ---------------------------------------------------------------------------------------------------
+
+    def _choose_tool(self, name: Tool) -> None:
+        self.tool = name
+        self.contact_start = None
+        self.tool_buttons[name].setChecked(True)
+        self.canvas.panning = name == "pan"
+        cursors = {"pan": Qt.CursorShape.OpenHandCursor, "select": Qt.CursorShape.ArrowCursor}
+        self.canvas.setCursor(cursors.get(name, Qt.CursorShape.CrossCursor))
+        self.hint.emit(HINTS[name])
+
+    def _begin(self, place: tuple[float, float], keys: Qt.KeyboardModifier) -> Gesture | None:
+        return gesture_for(
+            self.tool,
+            self._marks,
+            self.frame,
+            place,
+            self.canvas.view.scale,
+            adding=bool(keys & Qt.KeyboardModifier.ShiftModifier),
+            subtracting=bool(keys & Qt.KeyboardModifier.AltModifier),
+        )
+
+    def _hovered(self, place: tuple[float, float] | None) -> None:
+        found = track_at(self._marks, self.frame, place, self.canvas.view.scale) if place is not None else ""
+        if found != self.shown.hovered:
+            self.shown.hovered = found
+            self.refresh()
+
+    def _happened(self, event: object) -> None:
+        if self.project is None:
+            return
+        if isinstance(event, Drawing):
+            self.shown.drawing = event.points
+        elif isinstance(event, Moving):
+            self.shown.dragged = (event.owner, event.place)
+            self.project.select_track(event.owner)
+            self.hint.emit("Let go to correct the point here; Esc puts it back.")
+        else:
+            self.shown.dragged, self.shown.drawing = None, ()
+            self._decided(event)
+        self.refresh()
+
+    def _decided(self, event: object) -> None:
+        project, frame = self.project, self.frame
+        assert project is not None
+        if isinstance(event, Moved):
+            project.select_track(event.owner)
+            edits_by_mouse.correct(project, event.owner, frame, event.place)
+        elif isinstance(event, Placed):
+            edits_by_mouse.add_point(project, frame, event.place)
+        elif isinstance(event, Drawn):
+            edits_by_mouse.draw_mask(project, frame, event.points, event.mode)
+        elif isinstance(event, Chosen):
+            project.select_track(event.owner)
+            if self.tool == "contact" and event.owner:
+                self.contact_start, sentence = edits_by_mouse.mark_contact(
+                    project, event.owner, frame, self.contact_start
+                )
+                self.hint.emit(sentence or HINTS["contact"])
+                return
+        if isinstance(event, Cancelled | Chosen | Moved):
+            self.hint.emit(HINTS[self.tool])
+
+    # commands ----------------------------------------------------------------------------------------------------
+
+    def command(self, name: str) -> bool:
+        """Do a command of this workspace; says whether it was one."""
+        if name.startswith("tool_"):
+            self._choose_tool(name.removeprefix("tool_"))  # type: ignore[arg-type]
+        elif name == "cancel":
+            if self.canvas.cancel():
+                return True
+            if self.tool == "select":
+                return False
+            self._choose_tool("select")
+        elif name in (handlers := self._handlers()):
+            handlers[name]()
+        else:
+            return False
+        return True
+
+    def _handlers(self) -> dict[str, Callable[[], object]]:
+        project, frame = self.project, self.frame
+        if project is None:
+            return {}
+        nudge = edits_by_mouse.nudge
+        return {
+            "fit": self.canvas.fit,
+            "magnifier": self.magnifier_button.toggle,
+            "overlay": lambda: self._switch("marks", not self.shown.marks),
+            "delete": lambda: edits_by_mouse.delete(project, frame),
+            "next_track": lambda: edits_by_mouse.next_track(project),
+            "nudge_left": lambda: nudge(project, self.reading, frame, -0.25, 0.0),
+            "nudge_right": lambda: nudge(project, self.reading, frame, 0.25, 0.0),
+            "nudge_up": lambda: nudge(project, self.reading, frame, 0.0, -0.25),
+            "nudge_down": lambda: nudge(project, self.reading, frame, 0.0, 0.25),
+        }
