@@ -22,29 +22,44 @@ class PoseDrag:
 
     Parameters
     ----------
-    session, character_id, frame : what is posed. Its animation must have been computed.
+    session, character_id, frame : what is posed. Its motion before any edit must have been computed.
+    before : (v, 3) the frame as the user sees it, where its animation is still on its way; default the animation's.
+    former : an earlier drag; of the same character it lends what depends on the mesh alone.
 
     Raises
     ------
     InputError : the character has not been animated yet.
     """
 
-    def __init__(self, session: Session, character_id: str, frame: int) -> None:
+    def __init__(
+        self,
+        session: Session,
+        character_id: str,
+        frame: int,
+        *,
+        before: Array | None = None,
+        former: PoseDrag | None = None,
+    ) -> None:
         from imitation.deformation import Deformer
 
         self.character_id, self.frame = character_id, frame
         base = session.ready(session.stages.base(character_id))
         animated = session.ready(session.stages.animation(character_id))
         character = session.document.character(character_id)
-        if base is None or not isinstance(animated, Animation):
+        if before is None and isinstance(animated, Animation):
+            before = animated.vertices[frame]
+        if base is None or before is None:
             raise InputError(f"{character.name} has not been animated yet: animate it, then pose it.")
-        self._base = base
-        self._before: Array = np.array(animated.vertices[frame])
+        self._base, self._volume = base, character.solve.keep_volume
+        self._before: Array = np.array(before)
         edit = character.edits.get(frame)
         self._moves: dict[int, Array] = (
             {vertex: np.array(move.place) for vertex, move in edit.moves.items() if not move.muted} if edit else {}
         )
-        self._deformer = Deformer(base.rest, base.faces, keep_volume=character.solve.keep_volume)  # type: ignore[attr-defined]
+        if former is not None and former._base is base and former._volume == self._volume:
+            self._deformer = former._deformer
+        else:
+            self._deformer = Deformer(base.rest, base.faces, keep_volume=self._volume)  # type: ignore[attr-defined]
         self._pose: object = self._before
 
     @property
