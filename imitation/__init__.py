@@ -1,7 +1,83 @@
-"""Engine of motion imitation from a handheld video: arrays in, arrays out (Zhang et al., "Motion Imitation with a Handheld Camera")."""
+"""Engine of motion imitation from a handheld video: arrays in, arrays out.
+
+Paper A: Zhang et al., "Motion Imitation with a Handheld Camera". The names below are the scripting surface; parts
+that need compiled kernels or large packages are imported when they are first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from imitation.cameras import CameraPath
 from imitation.errors import Cancelled, InputError, NoSolution
 from imitation.geometry import Camera
 
-__all__ = ["Camera", "CameraPath", "Cancelled", "InputError", "NoSolution"]
+if TYPE_CHECKING:
+    from imitation.deformation import Deformer, FrameConstraints
+    from imitation.motion import (
+        align_character,
+        anchor_depths,
+        propose_contacts,
+        smooth_depths,
+        transfer_track,
+    )
+    from imitation.propagation import Imitation, commit_edit, imitate, propagate, solve_base
+    from imitation.tracking import Track, carry_masks, compute_flow, track_point
+
+_PARTS = {
+    "Deformer": "deformation",
+    "FrameConstraints": "deformation",
+    "Imitation": "propagation",
+    "Track": "tracking",
+    "align_character": "motion",
+    "anchor_depths": "motion",
+    "carry_masks": "tracking",
+    "commit_edit": "propagation",
+    "compute_flow": "tracking",
+    "imitate": "propagation",
+    "propagate": "propagation",
+    "propose_contacts": "motion",
+    "smooth_depths": "motion",
+    "solve_base": "propagation",
+    "track_point": "tracking",
+    "transfer_track": "motion",
+}
+
+__all__ = [
+    "Camera",
+    "CameraPath",
+    "Cancelled",
+    "Deformer",
+    "FrameConstraints",
+    "Imitation",
+    "InputError",
+    "NoSolution",
+    "Track",
+    "align_character",
+    "anchor_depths",
+    "carry_masks",
+    "commit_edit",
+    "compute_flow",
+    "imitate",
+    "propagate",
+    "propose_contacts",
+    "smooth_depths",
+    "solve_base",
+    "track_point",
+    "transfer_track",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a part of the engine when one of its names is first used."""
+    if name not in _PARTS:
+        raise AttributeError(f"module 'imitation' has no attribute {name!r}")
+    value = getattr(import_module(f"imitation.{_PARTS[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """All public names, also those not imported yet."""
+    return sorted(__all__)

@@ -13,6 +13,8 @@ from imitation.errors import InputError
 from imitation.motion.anchors import Loss, anchor_depths
 from imitation.motion.banded import Array
 from imitation.motion.contacts import Contact, contact_places
+from imitation.motion.polishing import denoise_tracks
+from imitation.motion.rays import lift_points, project_points
 from imitation.motion.transfer import transfer_track
 
 
@@ -30,6 +32,7 @@ class KeyTracks:
     planted : (n, k) where the key point is in contact.
     places : (n, k, 3) transferred 3D tracks of the anchors (eq. 1-5), world; NaN for key points without contact.
     confidence : (n, k) in [0, 1]; 0 in gaps.
+    noise : (k,) jitter that was taken out of the 2D tracks, standard deviation, pixels.
     """
 
     names: tuple[str, ...]
@@ -40,6 +43,7 @@ class KeyTracks:
     planted: NDArray[np.bool_]
     places: Array
     confidence: Array
+    noise: Array
 
     def __len__(self) -> int:
         return len(self.names)
@@ -55,9 +59,11 @@ def key_tracks(
     confidence: Mapping[str, ArrayLike] | None = None,
     beta: float = 1e-4,
     loss: Loss = "quadratic",
+    denoise: bool = True,
 ) -> KeyTracks:
     """Carry the tracks of all pairs to the target: 2D tracks by eq. 5 in the picture, anchors by eq. 5 in space.
 
+    With ``denoise`` the tracks are freed of their jitter first; else that of frame 0 is carried through the clip.
     Frame 0 is the boundary value (eq. 6): there each key point is at its vertex. An anchor whose point is not in
     contact in frame 0 takes the vertex's depth there, else eq. 5 would carry an arbitrary offset through the clip.
     """
@@ -78,6 +84,9 @@ def key_tracks(
         raise InputError(
             f'The vertex of "{hidden}" is behind the camera in frame 0; align the character with the subject.'
         )
+    noise = np.zeros(len(names))
+    if denoise:
+        filled, noise = denoise_tracks(filled, cameras, cameras[0].depth(start), diagonal(vertices), observed)
     pixels = np.empty_like(filled)
     planted = np.zeros((count, len(names)), bool)
     places = np.full((count, len(names), 3), np.nan)
@@ -91,7 +100,12 @@ def key_tracks(
         else:
             pixels[:, key] = transfer_track(filled[:, key], {0: first[key]})
     keys = np.array([pairs[name] for name in names], np.int64)
-    return KeyTracks(names, keys, start, pixels, observed, planted, places, trust)
+    return KeyTracks(names, keys, start, pixels, observed, planted, places, trust, noise)
+
+
+def diagonal(vertices: Array) -> float:
+    """Length of the bounding box's diagonal, the unit of all weights."""
+    return float(np.linalg.norm(np.ptp(vertices, axis=0)))
 
 
 def fill_gaps(pixels: Array, observed: NDArray[np.bool_]) -> Array:
@@ -110,26 +124,20 @@ def fill_gaps(pixels: Array, observed: NDArray[np.bool_]) -> Array:
     return filled
 
 
-def rays_of(cameras: CameraPath, pixels: Array) -> tuple[Array, Array]:
-    """Camera centres (n, 3) and ray directions (n, k, 3) of unit camera z through pixels (n, k, 2)."""
-    directions = np.stack([cameras[frame].rays(pixels[frame]) for frame in range(len(pixels))])
-    return cameras.centres, directions
-
-
 def _anchor_track(track: Array, cameras: CameraPath, touched: Array, start: Array, beta: float, loss: Loss) -> Array:
     """The anchor's 3D track (n, 3) of the source; a contact is one place in all its frames."""
     known = {int(frame): touched[frame] for frame in np.flatnonzero(np.isfinite(touched).all(axis=1))}
     if 0 not in known:
         known[0] = cameras[0].lift(track[0], cameras[0].depth(start))
     depth = anchor_depths(track, cameras, known, beta=beta, loss=loss)
-    points = np.stack([cameras[frame].lift(track[frame], depth[frame]) for frame in range(len(track))])
+    points = lift_points(cameras, track[:, None], depth[:, None])[:, 0]
     planted = np.isfinite(touched).all(axis=1)
     points[planted] = touched[planted]
     return points
 
 
 def _project(cameras: CameraPath, points: Array, name: str) -> Array:
-    pixels = np.stack([cameras[frame].project(points[frame]) for frame in range(len(points))])
+    pixels = project_points(cameras, points[:, None])[:, 0]
     if not np.isfinite(pixels).all():
         frame = int(np.argmin(np.isfinite(pixels).all(axis=1)))
         raise InputError(f'The anchor "{name}" passes behind the camera in frame {frame}; check its contacts.')

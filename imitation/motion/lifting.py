@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from imitation.cameras import CameraPath
 from imitation.errors import InputError
 from imitation.motion.banded import Array, solve_band
-from imitation.motion.keys import rays_of
+from imitation.motion.rays import rays_of, windowed_acceleration
 from imitation.progress import Progress, silent
 
 
@@ -193,17 +193,6 @@ def seen_acceleration(problem: LiftProblem, depths: Array, window: float) -> Arr
     if len(depths) < 3:
         return np.zeros((0, depths.shape[1]))
     return windowed_acceleration(problem.points(depths), problem.directions, window)
-
-
-def windowed_acceleration(points: Array, directions: Array, window: float) -> Array:
-    """Squared second difference of points (n, k, 3) across the rays (n, k, 3), Gaussian mean over ``window`` frames."""
-    from scipy.ndimage import gaussian_filter1d
-
-    ray = directions[1:-1] / np.linalg.norm(directions[1:-1], axis=-1, keepdims=True)
-    change = np.diff(points, 2, axis=0)
-    across = change - (change * ray).sum(axis=-1, keepdims=True) * ray
-    seen: Array = np.asarray(gaussian_filter1d((across**2).sum(axis=-1), window, axis=0, mode="nearest"))
-    return np.maximum(seen, 0)
 
 
 def _problem(

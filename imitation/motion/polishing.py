@@ -7,12 +7,14 @@ from numpy.typing import NDArray
 
 from imitation.cameras import CameraPath
 from imitation.motion.banded import Array, solve_band
-from imitation.motion.lifting import windowed_acceleration
+from imitation.motion.rays import lift_points, pixel_size, project_points, rays_of, windowed_acceleration
 
 STILL = 0.0002
 HELD = 0.001
 ALONG = 0.003
 FLOOR = 0.001
+NOISE_SHARE = 1.3 * 12
+"""Noise alone shows as 6 spread^2 on each of two axes; 1.3 for what a short window's mean leaves above it."""
 
 
 def pixel_noise(points: Array, cameras: CameraPath, observed: NDArray[np.bool_]) -> Array:
@@ -32,6 +34,20 @@ def pixel_noise(points: Array, cameras: CameraPath, observed: NDArray[np.bool_])
             size = np.abs(across[:, key][present]) * scale[2:-2, key][present, None]
             noise[key] = np.median(size) / 0.6745 / np.sqrt(70.0)
     return noise
+
+
+def denoise_tracks(
+    pixels: Array, cameras: CameraPath, depths: Array, diagonal: float, observed: NDArray[np.bool_]
+) -> tuple[Array, Array]:
+    """2D tracks (n, k, 2) freed of their jitter, and that jitter (k,), pixels.
+
+    They are smoothed in space, at the constant depths (k,) of frame 0, where the camera's shaking is gone.
+    """
+    points = lift_points(cameras, pixels, np.broadcast_to(depths, pixels.shape[:2]))
+    noise = pixel_noise(points, cameras, observed)
+    smooth = polish(points, cameras, rays_of(cameras, pixels)[1], diagonal, noise=noise, observed=observed)
+    clean = project_points(cameras, smooth)
+    return np.where(np.isfinite(clean), clean, pixels), noise
 
 
 def polish(
@@ -68,11 +84,10 @@ def polish(
     planted = np.zeros((count, keys), bool) if planted is None else planted
     held = np.zeros((count, keys), bool) if held is None else held
     observed = np.ones((count, keys), bool) if observed is None else observed
-    size = _pixel_size(points, cameras) / diagonal
+    size = pixel_size(cameras, points) / diagonal
     spread = np.maximum(noise * size, 1e-5)
     seen = windowed_acceleration(points / diagonal, directions, window)
-    # Noise alone shows as 6 spread^2 on each of the two axes across the ray.
-    acceleration = np.maximum(seen - 12 * spread[1:-1] ** 2, FLOOR**2)
+    acceleration = np.maximum(seen - NOISE_SHARE * spread[1:-1] ** 2, FLOOR**2)
     across = np.where(observed, spread, 0.05)
     along = 2 * np.maximum(across, ALONG)
     firm = held | planted
@@ -114,15 +129,8 @@ def _solve_key(data: Array, directions: Array, across: Array, along: Array, acce
     return solve_band(band.reshape(7, count * 3), right.ravel()).reshape(count, 3)
 
 
-def _pixel_size(points: Array, cameras: CameraPath) -> Array:
-    """World size (n, k) of one pixel at each point."""
-    depth = np.einsum("nj,nkj->nk", cameras.R[:, 2], points) + cameras.T[:, 2, None]
-    size: Array = depth / np.sqrt(cameras.K[:, 0, 0] * cameras.K[:, 1, 1])[:, None]
-    return size
-
-
 def _across(points: Array, cameras: CameraPath) -> tuple[Array, Array]:
     """Fourth differences (n - 4, k, 2) along the picture's axes, and pixels per world unit (n, k)."""
     change = np.diff(points, 4, axis=0)
     across = np.einsum("nij,nkj->nki", cameras.R[2:-2, :2], change)
-    return across, 1 / _pixel_size(points, cameras)
+    return across, 1 / pixel_size(cameras, points)

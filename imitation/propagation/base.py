@@ -15,9 +15,10 @@ from imitation.errors import InputError
 from imitation.motion.anchors import Loss
 from imitation.motion.banded import Array
 from imitation.motion.contacts import Contact
-from imitation.motion.keys import KeyTracks, key_tracks, rays_of
+from imitation.motion.keys import KeyTracks, diagonal, key_tracks
 from imitation.motion.lifting import LiftSettings, lift_tracks
 from imitation.motion.polishing import pixel_noise, polish
+from imitation.motion.rays import depths_of, lift_points, rays_of
 from imitation.motion.smoothing import smooth_depths
 from imitation.progress import Progress, part
 
@@ -168,7 +169,7 @@ def _solve_joint(
     polished[0] = keys.start
     clock.lap("lifting")
     progress(1.0)
-    return polished, noise
+    return polished, keys.noise
 
 
 def _solve_paper(
@@ -191,7 +192,7 @@ def _solve_paper(
     depths[0] = cameras[0].depth(keys.start)
     depths = np.where(np.isfinite(keys.places).all(axis=2), depths_of(cameras, keys.places), depths)
     smoothed = smooth_depths(depths, alpha=alpha, clamped=clamped)
-    lifted = np.stack([cameras[t].lift(keys.pixels[t], smoothed[t]) for t in range(len(cameras))])
+    lifted = lift_points(cameras, keys.pixels, smoothed)
     lifted[0] = keys.start
     clock.lap("depth smoothing")
     return lifted, np.zeros(len(keys))
@@ -236,17 +237,6 @@ def points_constraint(vertices: NDArray[np.int64], places: Array, softness: Arra
         depths={},
         softness={int(vertex): float(soft) for vertex, soft in zip(vertices, softness, strict=True)},
     )
-
-
-def depths_of(cameras: CameraPath, points: Array) -> Array:
-    """Camera z (n, k) of points (n, k, 3)."""
-    depths: Array = np.einsum("nj,nkj->nk", cameras.R[:, 2], points) + cameras.T[:, 2, None]
-    return depths
-
-
-def diagonal(vertices: Array) -> float:
-    """Length of the bounding box's diagonal."""
-    return float(np.linalg.norm(np.ptp(vertices, axis=0)))
 
 
 def make_deformer(vertices: Array, faces: NDArray[np.int32]) -> Deformer:

@@ -8,6 +8,7 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike
 
+from imitation.motion.rays import project_points
 from imitation.propagation.base import Base
 
 
@@ -66,7 +67,6 @@ def make_report(base: Base, edits: Mapping[int, Mapping[int, ArrayLike]], second
 
 def _reprojection(base: Base) -> dict[str, float]:
     points = base.key_points
-    pixels = np.stack([base.cameras[frame].project(points[frame]) for frame in range(len(base))])
-    squared = ((pixels - base.keys.pixels) ** 2).sum(axis=2)
+    squared = ((project_points(base.cameras, points) - base.keys.pixels) ** 2).sum(axis=2)
     squared[~base.keys.observed] = np.nan
     return {name: float(np.sqrt(np.nanmean(squared[:, key]))) for key, name in enumerate(base.keys.names)}

@@ -158,15 +158,17 @@ class SpanSolver:
     def _blend(self, values: list[Array], share: Array, frame: int) -> Array:
         if len(values) == 1:
             return values[0]
-        weight = share[frame - self.span.first.frame]
-        return (1 - weight) * values[0] + weight * values[1]
+        weight = float(share[frame - self.span.first.frame])
+        mixed: Array = (1 - weight) * values[0] + weight * values[1]
+        return mixed
 
     def _gradient(self, vertex: int, frame: int) -> Array:
         """The track that a control vertex follows: that of a key point, or its own in the first pass."""
         if vertex in self.follow:
-            place: Array = self.base.lifted[frame, self.follow[vertex]]
-            return place
-        return self.first_pass(frame)[vertex]
+            track: Array = self.base.lifted[frame, self.follow[vertex]]
+            return track
+        place: Array = self.first_pass(frame)[vertex]
+        return place
 
     def _control_offsets(self, vertex: int) -> tuple[list[Array], Array]:
         """Boundary values of a control vertex: its place in both poses, also where it was not dragged."""
