@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -57,7 +58,7 @@ class PoseDrag:
             {vertex: np.array(move.place) for vertex, move in edit.moves.items() if not move.muted} if edit else {}
         )
         if former is not None and former._base is base and former._volume == self._volume:
-            self._deformer = former._deformer
+            self._deformer: Any = former._deformer
         else:
             self._deformer = Deformer(base.rest, base.faces, keep_volume=self._volume)  # type: ignore[attr-defined]
         self._pose: object = self._before
@@ -79,9 +80,10 @@ class PoseDrag:
         for vertex, place in places.items():
             self._moves[int(vertex)] = np.array(tuple(place), np.float64)
         asked = edit_constraints(self._base, self.frame, self._moves, self._before)  # type: ignore[arg-type]
-        pose = self._deformer.solve_pose(asked, start=self._pose, iterations=STEPS)  # type: ignore[arg-type]
+        pose = self._deformer.solve_pose(asked, start=self._pose, iterations=STEPS)
         self._pose = pose
-        return pose.vertices
+        vertices: Array = pose.vertices
+        return vertices
 
     def committed(self) -> dict[int, tuple[float, float, float]]:
         """Relax the mesh to the end and give the place of every key point and control vertex."""
