@@ -139,6 +139,13 @@ class Project(QObject):
             self.track_id = track_id
             self.selection_changed.emit()
 
+    def select_next_track(self) -> None:
+        """Choose the track after the chosen one."""
+        ids = [track.id for track in self.document.tracks]
+        if ids:
+            number = ids.index(self.track_id) + 1 if self.track_id in ids else 0
+            self.select_track(ids[number % len(ids)])
+
     def select_vertex(self, vertex: int) -> None:
         """Choose a vertex of the character, or none (-1)."""
         if vertex != self.vertex:

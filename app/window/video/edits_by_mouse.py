@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from app.model.document import Document
 from app.model.edits import contacts, scene, tracks
+from app.window.picture_layers import Shown
 from app.window.project import Project
 from app.window.reading import Reading
-from app.window.video.layers import Shown
 
 Place = tuple[float, float]
 
@@ -67,14 +67,6 @@ def delete(project: Project, frame: int) -> None:
         project.edit(tracks.remove_click, track.id, frame)
     else:
         project.edit(tracks.delete_track, track.id)
-
-
-def next_track(project: Project) -> None:
-    """Select the track after the selected one."""
-    ids = [track.id for track in project.document.tracks]
-    if ids:
-        number = ids.index(project.track_id) + 1 if project.track_id in ids else 0
-        project.select_track(ids[number % len(ids)])
 
 
 def keep_old_paths(shown: Shown, reading: Reading, before: Document, after: Document) -> None:

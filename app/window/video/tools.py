@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-import numpy as np
-
 from app.window.canvas import TrackMark
 from app.window.canvas.gestures import DragGesture, Gesture, LassoGesture, PlaceGesture
-from app.window.canvas.hits import GRAB, nearest_point
+from app.window.picture_layers import track_at
 
 Tool = Literal["select", "lasso", "point", "contact", "pan"]
 TOOLS: tuple[tuple[Tool, str, str], ...] = (
@@ -25,22 +23,6 @@ HINTS: dict[str, str] = {
     "contact": "Click a point where it begins to stand on the ground, then click it again in the last such frame.",
     "pan": "Drag to move the picture.",
 }
-
-
-def track_at(marks: tuple[TrackMark, ...], frame: int, place: tuple[float, float], scale: float) -> str:
-    """The track under a picture place, within a reach that is the same on the screen at any zoom; empty for none.
-
-    Of several within reach a selected one is taken.
-    """
-    places = [mark.at(frame) or (np.nan, np.nan) for mark in marks]
-    chosen = [number for number, mark in enumerate(marks) if mark.selected]
-    reach = GRAB / scale
-    for numbers in (chosen, range(len(marks))):
-        rows = [places[number] for number in numbers]
-        found = nearest_point(place, rows, [marks[number].name for number in numbers], reach) if rows else None
-        if found is not None:
-            return found.owner
-    return ""
 
 
 def gesture_for(

@@ -13,15 +13,15 @@ from app.window.canvas import Canvas
 from app.window.canvas.gestures import Cancelled, Chosen, Drawing, Drawn, Gesture, Moved, Moving, Placed
 from app.window.controls import ErrorBar, Panel, icon_button, label, toggle, tool
 from app.window.frames import FrameLoader
+from app.window.picture_layers import Shown, layers, track_at, track_marks
 from app.window.picture_notes import PictureNotes
 from app.window.project import Project
 from app.window.reading import Reading
 from app.window.video import edits_by_mouse
 from app.window.video.inspector import TrackInspector
-from app.window.video.layers import Shown, layers, track_marks
 from app.window.video.point_windows import PointWindows, Window, window_frames
 from app.window.video.steps import StepList, steps
-from app.window.video.tools import HINTS, TOOLS, Tool, gesture_for, track_at
+from app.window.video.tools import HINTS, TOOLS, Tool, gesture_for
 
 
 class VideoWorkspace(QWidget):
@@ -296,7 +296,7 @@ class VideoWorkspace(QWidget):
             "magnifier": self.magnifier_button.toggle,
             "overlay": lambda: self._switch("marks", not self.shown.marks),
             "delete": lambda: edits_by_mouse.delete(project, frame),
-            "next_track": lambda: edits_by_mouse.next_track(project),
+            "next_track": project.select_next_track,
             "nudge_left": lambda: nudge(project, self.reading, frame, -0.25, 0.0),
             "nudge_right": lambda: nudge(project, self.reading, frame, 0.25, 0.0),
             "nudge_up": lambda: nudge(project, self.reading, frame, 0.0, -0.25),

@@ -1,4 +1,4 @@
-"""The layers over the picture in the Video workspace, made from the project."""
+"""The layers over a picture of the clip, made from the project, and which track lies under the mouse."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from app.model.tracks import Track
 from app.window import theme
 from app.window.canvas import GhostPath, Overlay, PointCloudLayer, PolygonLayer, TrackLayer, TrackMark
+from app.window.canvas.hits import GRAB, nearest_point
 from app.window.project import Project
 from app.window.reading import Reading
 
-HIDDEN = {"occluded": "hidden", "outside": "outside", "": "missing"}
+HIDDEN_STATES = {"occluded": "hidden", "outside": "outside", "": "missing"}
 
 
 @dataclass
@@ -52,7 +53,7 @@ def track_marks(project: Project, reading: Reading, frame: int, shown: Shown) ->
                 track.name,
                 colour_of(track),
                 known.positions,
-                HIDDEN.get(word, "seen"),
+                HIDDEN_STATES.get(word, "seen"),
                 clicked=frame in track.clicks,
                 selected=track.id == project.track_id,
                 contact=any(frame in contact.span for contact in track.contacts),
@@ -101,3 +102,19 @@ def _inliers(project: Project, frame: int) -> PointCloudLayer:
         return PointCloudLayer()
     rows = path.observations
     return PointCloudLayer(rows[rows[:, 0] == frame, 1:])
+
+
+def track_at(marks: tuple[TrackMark, ...], frame: int, place: tuple[float, float], scale: float) -> str:
+    """The track under a picture place, within a reach that is the same on the screen at any zoom; empty for none.
+
+    Of several within reach a selected one is taken.
+    """
+    places = [mark.at(frame) or (np.nan, np.nan) for mark in marks]
+    chosen = [number for number, mark in enumerate(marks) if mark.selected]
+    reach = GRAB / scale
+    for numbers in (chosen, range(len(marks))):
+        rows = [places[number] for number in numbers]
+        found = nearest_point(place, rows, [marks[number].name for number in numbers], reach) if rows else None
+        if found is not None:
+            return found.owner
+    return ""

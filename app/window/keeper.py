@@ -1,0 +1,108 @@
+"""Keeps results up to date while the user works: which stages are computed now, and what is given up for them."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, QTimer
+
+from app.model.document import Document
+from app.stages.job import Job
+from app.stages.stage import Stage
+from app.window.project import Project
+
+LINGER = 150
+
+
+class Keeper(QObject):
+    """Follows the document: tracks are solved at once, motion where the user wants it so.
+
+    A job whose stages are no longer wanted is given up a moment after the next one began, so that what both need is
+    not begun twice.
+    """
+
+    def __init__(self, project: Project, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.project = project
+        self.automatic = True
+        self.propagate_on_release = True
+        self._asked: dict[str, frozenset[str]] = {}
+        self._jobs: dict[str, Job] = {}
+        self._old: list[Job] = []
+        self._linger = QTimer(self)
+        self._linger.setSingleShot(True)
+        self._linger.setInterval(LINGER)
+        self._linger.timeout.connect(self._give_up_old)
+        project.document_changed.connect(self._changed)
+        project.stage_finished.connect(self._finished)
+
+    def _changed(self, before: Document, after: Document) -> None:
+        self.keep_up()
+
+    def _finished(self, stage: Stage) -> None:
+        if stage.name.startswith("track/"):
+            self.keep_up()
+
+    def keep_up(self) -> None:
+        """Start what is missing and wanted automatically."""
+        if not self.automatic:
+            return
+        tracks = self._missing(self._tracks())
+        self._want("tracks", "Following points", tracks)
+        motion = self._missing(self._motion()) if self.propagate_on_release and self._moved_before() else []
+        self._want("motion", "Moving the character", [] if tracks else motion)
+
+    def run_missing(self) -> bool:
+        """Start everything that is missing, whatever is wanted automatically; says whether there was anything."""
+        tracks, motion = self._missing(self._tracks()), self._missing([*self._cameras(), *self._motion()])
+        self._want("tracks", "Following points", tracks)
+        self._want("motion", "Moving the character", motion)
+        return bool(tracks or motion)
+
+    def _moved_before(self) -> bool:
+        """Whether a motion was solved before: only what was there once is kept up without being asked for."""
+        states = [self.project.state(stage) for stage in self._motion()]
+        return any(state in ("stale", "running") for state in states)
+
+    def _tracks(self) -> list[Stage]:
+        stages = self.project.session.stages
+        tracks = sorted(self.project.document.tracks, key=lambda track: track.id != self.project.track_id)
+        return [stages.track(track.id) for track in tracks]
+
+    def _cameras(self) -> list[Stage]:
+        stages = self.project.session.stages
+        return [stages.cameras, stages.world] if self.project.document.clip else []
+
+    def _motion(self) -> list[Stage]:
+        stages = self.project.session.stages
+        return [stages.animation(each.id) for each in self.project.document.characters if each.visible]
+
+    def _missing(self, stages: list[Stage]) -> list[Stage]:
+        return [
+            stage
+            for stage in stages
+            if self.project.state(stage) in ("missing", "stale", "running") and stage.why_blocked() is None
+        ]
+
+    def _want(self, kind: str, label: str, stages: list[Stage]) -> None:
+        keys = frozenset(stage.key for stage in stages)
+        running = self._jobs.get(kind)
+        alive = running is not None and running.state == "running"
+        if alive and (keys == self._asked.get(kind) or (keys and keys < self._asked.get(kind, frozenset()))):
+            return
+        if running is not None and alive:
+            self._old.append(running)
+            self._linger.start()
+        self._asked[kind] = keys
+        if stages:
+            self._jobs[kind] = self.project.start(label, *stages)
+        else:
+            self._jobs.pop(kind, None)
+
+    def _give_up_old(self) -> None:
+        for job in self._old:
+            job.cancel()
+        self._old = []
+
+    def close(self) -> None:
+        """Stop following."""
+        self._linger.stop()
+        self.automatic = False
