@@ -2,6 +2,8 @@
 
 from imitation.tracking.clip import PreparedClip, prepare_clip
 from imitation.tracking.flow import FlowField, compute_flow
+from imitation.tracking.masks import carry_masks
+from imitation.tracking.outlines import Outline, fill_outlines
 from imitation.tracking.paper import PaperOptions
 from imitation.tracking.point import track_point, track_span
 from imitation.tracking.robust import RobustOptions
@@ -9,6 +11,7 @@ from imitation.tracking.track import Span, SpanPlan, Track, assemble_track, plan
 
 __all__ = [
     "FlowField",
+    "Outline",
     "PaperOptions",
     "PreparedClip",
     "RobustOptions",
@@ -16,7 +19,9 @@ __all__ = [
     "SpanPlan",
     "Track",
     "assemble_track",
+    "carry_masks",
     "compute_flow",
+    "fill_outlines",
     "plan_spans",
     "prepare_clip",
     "track_point",

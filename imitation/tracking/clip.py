@@ -136,13 +136,18 @@ class PreparedClip:
 
     def mask(self, frame: int) -> Picture:
         """Mask of the subject as (h, w) uint8 of 0 and 1, or an empty array where there is none."""
-        if self.masks is None:
+        masks = self.masks
+        if masks is None:
             return NO_MASK
-        mask = np.asarray(self.masks[frame])
-        if mask.shape != (self.height, self.width):
-            raise InputError(f"The mask of frame {frame} is {mask.shape}, not ({self.height}, {self.width}).")
-        value: Picture = np.ascontiguousarray(mask.astype(bool)).view(np.uint8)
-        return value
+
+        def make(t: int) -> Pyramid:
+            mask = np.asarray(masks[t])
+            if mask.shape != (self.height, self.width):
+                raise InputError(f"The mask of frame {t} is {mask.shape}, not ({self.height}, {self.width}).")
+            return (np.ascontiguousarray(mask.astype(bool)).view(np.uint8),)
+
+        value: Pyramid = self._get("mask", frame, make)
+        return value[0]
 
 
 def prepare_clip(
