@@ -22,6 +22,7 @@ VERBS = {
     "check": "app.commands.check:check",
     "cameras": "app.commands.solve:cameras",
     "track": "app.commands.solve:track",
+    "contacts": "app.commands.solve:contacts",
     "animate": "app.commands.solve:animate",
     "render": "app.commands.output:render",
     "compare": "app.commands.output:compare",

@@ -103,3 +103,28 @@ def _table(name: str, result: Any) -> list[str]:
         f"{report['anchors']} anchors with {report['contacts']} contacts, {report['edited_frames']} edited frames"
     )
     return [counts, f"  {seconds}"]
+
+
+@click.command("contacts")
+@PROJECT
+@click.argument("names", nargs=-1)
+@click.option("--accept", is_flag=True, help="Mark what was proposed.")
+@click.pass_obj
+def contacts(console: Console, project: Path, names: tuple[str, ...], accept: bool) -> None:
+    """Propose frames in which points stand on the ground (of all tracks, or those named)."""
+    from app.actions.proposing import accept_contacts, proposed_contacts
+
+    with closing(Session.open(project)) as session:
+        chosen = [track_named(session.document, name) for name in names] or list(session.document.tracks)
+        stages = tuple(session.stages.track(each.id) for each in chosen)
+        console.compute(session, "Tracking", (*stages, session.stages.world))
+        values, lines = {}, []
+        for each in chosen:
+            spans = proposed_contacts(session, each.id)
+            values[each.name] = [[span.first, span.last] for span in spans]
+            lines.append(f"{each.name:24} {', '.join(f'{span.first}-{span.last}' for span in spans) or 'none'}")
+            if accept:
+                accept_contacts(session, each.id, spans)
+        if accept:
+            session.save()
+        console.answer(values, lines)
