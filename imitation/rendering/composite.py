@@ -1,0 +1,165 @@
+"""Characters over the frames of a film: plate, shadow, occlusion, tracked points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import attrs
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from imitation.errors import InputError
+from imitation.geometry.projection import Camera
+from imitation.progress import Progress, silent
+from imitation.rendering.ground import Ground, Plane, ground_shadow
+from imitation.rendering.light import Look
+from imitation.rendering.mesh import UP, Renderer, Rendering
+
+Picture = NDArray[np.uint8]
+
+
+@attrs.frozen(eq=False)
+class Layer:
+    """What is laid over a frame.
+
+    Attributes
+    ----------
+    rendering : the character.
+    shadow : (h, w) how much of the frame's light it takes, 0 to 1, or None.
+    """
+
+    rendering: Rendering
+    shadow: NDArray[np.float32] | None = None
+
+
+def composite(
+    frame: Picture, layers: Sequence[Layer], *, background: NDArray[np.floating] | None = None, tolerance: float = 0.0
+) -> Picture:
+    """Lay characters over a frame; the nearer covers the farther.
+
+    Parameters
+    ----------
+    frame : uint8 RGB (h, w, 3).
+    layers : in any order.
+    background : (h, w) camera z of the background, NaN where unknown; what lies behind it is hidden.
+    tolerance : how far behind the background still counts as before it, world units.
+    """
+    out = frame.astype(np.float32)
+    for layer in layers:
+        if layer.rendering.depth.shape != frame.shape[:2]:
+            raise InputError(
+                f"The layer is {layer.rendering.depth.shape[::-1]} pixels, but the frame is {frame.shape[1::-1]}."
+            )
+        if layer.shadow is not None:
+            out *= 1 - layer.shadow[..., None]
+    # Farthest first, decided pixel by pixel.
+    depths = np.stack([layer.rendering.depth for layer in layers]) if layers else np.zeros((0, *frame.shape[:2]))
+    for place in np.argsort(-depths, axis=0, kind="stable") if len(layers) > 1 else np.zeros((len(layers), 1, 1), int):
+        for index, layer in enumerate(layers):
+            alpha = layer.rendering.rgba[..., 3:].astype(np.float32) / 255
+            alpha = np.where((place == index)[..., None], alpha, 0)
+            if background is not None:
+                with np.errstate(invalid="ignore"):
+                    alpha = np.where((layer.rendering.depth > background + tolerance)[..., None], 0, alpha)
+            out += alpha * (layer.rendering.rgba[..., :3] - out)
+    done: Picture = np.clip(np.rint(out), 0, 255).astype(np.uint8)
+    return done
+
+
+def render_sequence(
+    vertices: Sequence[ArrayLike] | NDArray[np.floating],
+    faces: ArrayLike,
+    cameras: Sequence[Camera],
+    frames: Sequence[Picture] | Picture | tuple[int, int],
+    *,
+    colors: ArrayLike | None = None,
+    ground: Ground | Sequence[Ground] | None = None,
+    background: Sequence[NDArray[np.floating]] | None = None,
+    tracks: Mapping[str, NDArray[np.float64]] | None = None,
+    dim: float = 0.0,
+    look: Look | None = None,
+    samples: int = 3,
+    up: ArrayLike = UP,
+    progress: Progress | None = None,
+) -> Iterator[Picture]:
+    """Draw a moving character over the frames of a film, one picture after the other.
+
+    Parameters
+    ----------
+    vertices : (n, v, 3) world positions in each frame.
+    faces : (m, 3) vertex indices.
+    cameras : n cameras (a CameraPath).
+    frames : n uint8 RGB pictures (h, w, 3), or one for all (a plate), or (width, height) for a plain background.
+    colors : (v, 3) uint8 sRGB.
+    ground : receives the shadow: one for all frames, or one a frame; None for no shadow.
+    background : n depth maps (h, w) that hide what is behind them.
+    tracks : name to (n, 2) tracked points to draw, pixels.
+    dim : how far the background fades towards grey, 0 to 1.
+    """
+    report = progress or silent
+    count = len(vertices)
+    if not len(cameras) == count or (not isinstance(frames, np.ndarray | tuple) and len(frames) < count):
+        raise InputError(f"There are {count} poses, but {len(cameras)} cameras; give a camera and a frame for each.")
+    size = (
+        frames if isinstance(frames, tuple) else (frames if isinstance(frames, np.ndarray) else frames[0]).shape[1::-1]
+    )
+    with Renderer(faces, (size[0], size[1]), colors=colors, look=look, samples=samples, up=up) as renderer:
+        report(0.0)
+        for t in range(count):
+            pose, camera = np.ascontiguousarray(vertices[t], np.float64), cameras[t]
+            back = (
+                studio(frames) if isinstance(frames, tuple) else frames if isinstance(frames, np.ndarray) else frames[t]
+            )
+            if dim:
+                back = np.rint(back + dim * (np.float32(96) - back)).astype(np.uint8)
+            floor = ground if ground is None or isinstance(ground, Plane | np.ndarray) else ground[t]
+            yield over_frame(
+                renderer, pose, camera, back, floor, None if background is None else background[t],
+                None if tracks is None else [track[t] for track in tracks.values()],
+            )  # fmt: skip
+            report((t + 1) / count)
+
+
+def over_frame(
+    renderer: Renderer,
+    vertices: NDArray[np.float64],
+    camera: Camera,
+    frame: Picture,
+    ground: Ground | None = None,
+    background: NDArray[np.floating] | None = None,
+    points: Sequence[NDArray[np.float64]] | None = None,
+) -> Picture:
+    """Draw one pose over one frame."""
+    lights = renderer.lights(vertices, camera)
+    rendering = renderer.draw(vertices, camera, lights)
+    shadow = None
+    if ground is not None:
+        shadow = ground_shadow(vertices, lights, camera, renderer.size, ground, renderer.look, renderer.up)
+    tolerance = 0.05 * lights[0].radius
+    out = composite(frame, [Layer(rendering, shadow)], background=background, tolerance=tolerance)
+    return out if points is None else draw_points(out, points)
+
+
+def draw_points(picture: Picture, points: Sequence[NDArray[np.float64]], radius: float | None = None) -> Picture:
+    """Draw tracked points (x, y), pixels, as ringed discs; NaN ones are left out."""
+    import cv2
+
+    out = np.ascontiguousarray(picture).copy()
+    size = radius or max(2.5, picture.shape[0] / 160)
+    for number, (x, y) in enumerate(points):
+        if not (np.isfinite(x) and np.isfinite(y)):
+            continue
+        hue = np.array([[[int(180 * (number * 0.618 % 1)), 190, 255]]], np.uint8)
+        color = cv2.cvtColor(hue, cv2.COLOR_HSV2RGB)[0, 0].tolist()
+        place = (round(float(x) * 16), round(float(y) * 16))
+        cv2.circle(out, place, round(size * 16 + 16), (20, 20, 20), -1, cv2.LINE_AA, 4)
+        cv2.circle(out, place, round(size * 16), color, -1, cv2.LINE_AA, 4)
+    return out
+
+
+def studio(size: tuple[int, int]) -> Picture:
+    """A plain background (h, w, 3) that is lighter in the middle."""
+    x, y = np.meshgrid(np.linspace(-1, 1, size[0]), np.linspace(-1, 1, size[1]))
+    light = 1 - 0.32 * np.clip(x * x * 0.55 + (y + 0.15) ** 2 * 0.7, 0, 1.6)
+    shade: Picture = np.clip(light[..., None] * np.array([206, 210, 216]), 0, 255).astype(np.uint8)
+    return shade

@@ -1,0 +1,242 @@
+# mypy: disable-error-code="untyped-decorator"
+"""Pictures of one mesh: lit, anti-aliased, with depth."""
+
+from __future__ import annotations
+
+from typing import Any, Self
+
+import attrs
+import numpy as np
+from numba import njit
+from numpy.typing import ArrayLike, NDArray
+
+from imitation.errors import InputError
+from imitation.geometry.projection import Camera
+from imitation.rendering.light import LightMap, Look, blocked, key_direction, light_map
+from imitation.rendering.raster import rasterise
+
+UP = (0.0, 0.0, 1.0)
+_BAND = 1 << 22
+"""Samples rasterised at once: bounds the memory of large pictures."""
+
+
+@attrs.frozen(eq=False)
+class Rendering:
+    """A picture of a mesh before nothing.
+
+    Attributes
+    ----------
+    rgba : uint8 (h, w, 4) sRGB, colours not multiplied by alpha.
+    depth : float32 (h, w) camera z of the nearest surface in each pixel, inf where there is none.
+    """
+
+    rgba: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+
+
+class Renderer:
+    """Draws one mesh of fixed connectivity again and again.
+
+    Parameters
+    ----------
+    faces : (m, 3) vertex indices.
+    size : (width, height) of the pictures, pixels.
+    colors : (v, 3) uint8 sRGB a vertex, or None for the look's base colour.
+    look : lights and strengths.
+    samples : samples along each side of a pixel; 2 for previews, 3 for films.
+    up : direction of the sky, world.
+    """
+
+    def __init__(
+        self,
+        faces: ArrayLike,
+        size: tuple[int, int],
+        *,
+        colors: ArrayLike | None = None,
+        look: Look | None = None,
+        samples: int = 2,
+        up: ArrayLike = UP,
+    ) -> None:
+        self.faces = np.ascontiguousarray(faces, np.int32)
+        if self.faces.ndim != 2 or self.faces.shape[1] != 3 or not len(self.faces):
+            raise InputError(f"A mesh to draw needs faces (m, 3), but got {self.faces.shape}.")
+        if min(size) < 1 or size[0] * size[1] > 1 << 27 or not 1 <= samples <= 8:
+            raise InputError(f"A picture of {size[0]} x {size[1]} pixels with {samples} samples cannot be drawn.")
+        self.size, self.samples, self.look = (int(size[0]), int(size[1])), samples, look or Look()
+        self.up = np.asarray(up, np.float64) / np.linalg.norm(up)
+        self._colors = None if colors is None else linear(np.asarray(colors, np.uint8))
+        self.key: NDArray[np.float64] | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *reason: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Let go of what is kept between pictures."""
+        self._colors, self.key = None, None
+
+    def lights(self, vertices: NDArray[np.float64], camera: Camera) -> tuple[LightMap, LightMap]:
+        """What the key light and the sky straight above see of the mesh; the key stays where it first stood."""
+        if self.key is None:
+            self.key = key_direction(self.look, camera, self.up)
+        return light_map(vertices, self.faces, self.key), light_map(vertices, self.faces, self.up, 192)
+
+    def draw(self, vertices: ArrayLike, camera: Camera, lights: tuple[LightMap, LightMap] | None = None) -> Rendering:
+        """Draw the mesh with vertices (v, 3), world, as the camera sees it."""
+        v = np.ascontiguousarray(vertices, np.float64)
+        if v.ndim != 2 or v.shape[1] != 3 or self.faces.max() >= len(v) or not np.isfinite(v).all():
+            raise InputError(f"A mesh to draw needs finite vertices (v, 3) for all its faces, but got {v.shape}.")
+        key, sky = lights or self.lights(v, camera)
+        normals = smooth_normals(v, self.faces)
+        radius = key.radius
+        covered = blocked(
+            v + 0.02 * radius * normals, sky, surface=True, least=0.30 * radius, bias=0.02 * radius, count=48
+        )
+        hidden = blocked(
+            v + 0.015 * radius * normals, key, surface=True, least=0.02 * radius, spread=0.08, bias=0.02 * radius
+        )
+        lit = self._vertex_light(v, normals, covered, camera)
+        albedo = (
+            self._colors if self._colors is not None else linear(np.tile(np.array(self.look.base) * 255, (len(v), 1)))
+        )
+        if len(albedo) != len(v):
+            raise InputError(f"There are colours for {len(albedo)} vertices, but the mesh has {len(v)}.")
+        key_now = self.key if self.key is not None else key_direction(self.look, camera, self.up)
+        rgba = np.zeros((self.size[1], self.size[0], 4), np.uint8)
+        depth = np.full((self.size[1], self.size[0]), np.inf, np.float32)
+        rows = max(1, _BAND // (self.size[0] * self.samples**2))
+        top, bottom = self._span(v, camera)
+        for first in range(top, bottom, rows):
+            last = min(first + rows, bottom)
+            band = Camera(camera.K - np.array([[0, 0, 0], [0, 0, first], [0, 0, 0.0]]), camera.R, camera.T)
+            seen = rasterise(v, self.faces, band, (self.size[0], last - first), self.samples)
+            _shade(
+                seen.depth, seen.face, seen.weights, self.samples, self.faces, v, normals, albedo, lit, 1.0 - hidden,
+                camera.centre, key_now, np.array(self.look.key_light), self.look.gloss,
+                rgba[first:last], depth[first:last],
+            )  # fmt: skip
+        return Rendering(rgba, depth)
+
+    def _span(self, vertices: NDArray[np.float64], camera: Camera) -> tuple[int, int]:
+        """First row and last row + 1 that the mesh may reach."""
+        if (camera.depth(vertices) <= 0).any():
+            return 0, self.size[1]
+        rows = camera.project(vertices)[:, 1]
+        return max(0, int(np.floor(rows.min()))), min(self.size[1], int(np.ceil(rows.max())) + 2)
+
+    def _vertex_light(
+        self, vertices: NDArray[np.float64], normals: NDArray[np.float64], covered: NDArray[np.float64], camera: Camera
+    ) -> NDArray[np.float64]:
+        """Light (v, 3) from sky, ground and fill."""
+        height = vertices @ self.up
+        low = (height - height.min()) / max(float(np.ptp(height)), 1e-9)
+        tilt = (0.5 + 0.5 * normals @ self.up)[:, None]
+        open_sky = (1 - 0.75 * covered)[:, None]
+        # Near the ground the bounce is weaker: the character shades its own floor.
+        near_ground = (0.45 + 0.55 * np.clip(low / 0.5, 0, 1))[:, None]
+        assert self.key is not None
+        across = self.key - 2 * self.up * (self.key @ self.up)
+        fill = np.clip(normals @ -across, 0, None)[:, None]
+        sky, bounce, side = (np.array(each) for each in (self.look.sky, self.look.bounce, self.look.fill_light))
+        light: NDArray[np.float64] = open_sky * tilt * sky + near_ground * (1 - tilt) * bounce + fill * side
+        return light
+
+
+def render_mesh(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    camera: Camera,
+    size: tuple[int, int],
+    *,
+    colors: ArrayLike | None = None,
+    look: Look | None = None,
+    samples: int = 2,
+    up: ArrayLike = UP,
+) -> Rendering:
+    """Draw one mesh once; see Renderer."""
+    with Renderer(faces, size, colors=colors, look=look, samples=samples, up=up) as renderer:
+        return renderer.draw(vertices, camera)
+
+
+def smooth_normals(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Unit normals (v, 3), weighted by area."""
+    corners = vertices[faces]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.stack(
+        [np.bincount(faces.reshape(-1), np.repeat(across[:, axis], 3), len(vertices)) for axis in range(3)], axis=1
+    )
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    unit: NDArray[np.float64] = normals / np.where(lengths > 0, lengths, 1.0)
+    return unit
+
+
+def linear(colors: NDArray[np.number]) -> NDArray[np.float64]:
+    """Linear light of sRGB colours 0 to 255."""
+    s = colors / 255.0
+    values: NDArray[np.float64] = np.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
+    return values
+
+
+@njit(cache=True, nogil=True)
+def _shade(
+    z: Any, face: Any, weights: Any, samples: int, faces: Any, vertices: Any, normals: Any, albedo: Any, lit: Any,
+    open_key: Any, eye: Any, key: Any, key_light: Any, gloss: float, rgba: Any, depth: Any,
+) -> None:  # fmt: skip
+    height, width = depth.shape
+    color = np.empty(3)
+    for row in range(height):
+        for column in range(width):
+            total = np.zeros(3)
+            hits = 0
+            for dy in range(samples):
+                for dx in range(samples):
+                    y, x = row * samples + dy, column * samples + dx
+                    f = face[y, x]
+                    if f < 0:
+                        continue
+                    hits += 1
+                    depth[row, column] = min(depth[row, column], z[y, x])
+                    i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+                    a, b = weights[y, x, 0], weights[y, x, 1]
+                    c = 1.0 - a - b
+                    n = a * normals[i] + b * normals[j] + c * normals[k]
+                    view = eye - (a * vertices[i] + b * vertices[j] + c * vertices[k])
+                    view /= np.sqrt(view[0] ** 2 + view[1] ** 2 + view[2] ** 2) + 1e-30
+                    n /= np.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2) + 1e-30
+                    facing = n[0] * view[0] + n[1] * view[1] + n[2] * view[2]
+                    p, q = vertices[j] - vertices[i], vertices[k] - vertices[i]
+                    outward = (
+                        (p[1] * q[2] - p[2] * q[1]) * view[0]
+                        + (p[2] * q[0] - p[0] * q[2]) * view[1]
+                        + (p[0] * q[1] - p[1] * q[0]) * view[2]
+                    )
+                    if outward < 0:
+                        # A surface seen from behind is lit from the side it is seen from.
+                        n = -n
+                        facing = -facing
+                    facing = max(facing, 0.0)
+                    # Wrapped a little, so that the edge of the shade is soft.
+                    toward = (n[0] * key[0] + n[1] * key[1] + n[2] * key[2] + 0.12) / 1.12
+                    free = a * open_key[i] + b * open_key[j] + c * open_key[k]
+                    half = key + view
+                    half /= np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2) + 1e-30
+                    shine = max(0.0, n[0] * half[0] + n[1] * half[1] + n[2] * half[2]) ** 28 * gloss
+                    rim = (1.0 - facing) ** 4 * 0.10
+                    for channel in range(3):
+                        body = a * albedo[i, channel] + b * albedo[j, channel] + c * albedo[k, channel]
+                        around = a * lit[i, channel] + b * lit[j, channel] + c * lit[k, channel]
+                        direct = max(0.0, toward) * free * key_light[channel]
+                        color[channel] = body * (around + direct) + direct * shine + around * rim
+                    total += color
+            if hits == 0:
+                continue
+            for channel in range(3):
+                value = total[channel] / hits
+                # Highlights roll off instead of clipping.
+                if value > 0.7:
+                    value = 0.7 + 0.3 * (1.0 - np.exp(-(value - 0.7) / 0.3))
+                encoded = 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
+                rgba[row, column, channel] = np.uint8(min(max(encoded, 0.0), 1.0) * 255 + 0.5)
+            rgba[row, column, 3] = np.uint8(255.0 * hits / samples**2 + 0.5)

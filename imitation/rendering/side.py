@@ -1,0 +1,170 @@
+"""A view from the side: what depth does, which the film's own camera cannot show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from imitation.errors import InputError
+from imitation.geometry.projection import Camera
+from imitation.progress import Progress, silent
+from imitation.rendering.composite import Picture, over_frame, studio
+from imitation.rendering.ground import Plane
+from imitation.rendering.light import Look, look_at
+from imitation.rendering.mesh import UP, Renderer
+
+_HALF_VIEW = np.radians(14)
+_FLOOR = np.array([150, 155, 163], np.float32)
+
+
+def side_cameras(
+    vertices: Sequence[ArrayLike] | NDArray[np.floating],
+    cameras: Sequence[Camera],
+    size: tuple[int, int],
+    *,
+    up: ArrayLike = UP,
+    turn: float = np.pi / 2,
+    tilt: float = 0.16,
+    smoothing: float = 8.0,
+) -> list[Camera]:
+    """Cameras that look at the subject turned about the up axis, and follow it smoothly.
+
+    Parameters
+    ----------
+    vertices : (n, v, 3) world positions in each frame.
+    cameras : n cameras of the film; their mean direction is what is turned.
+    size : (width, height) of the pictures.
+    up : direction of the sky, world.
+    turn : angle about ``up``, radians.
+    tilt : how far the view looks down, radians.
+    smoothing : frames over which the subject's place is averaged (standard deviation).
+    """
+    above = np.asarray(up, np.float64) / np.linalg.norm(up)
+    poses = [np.asarray(pose, np.float64) for pose in vertices]
+    centres = np.array([(pose.min(axis=0) + pose.max(axis=0)) / 2 for pose in poses])
+    radius = max(
+        float(np.linalg.norm(pose - centre, axis=1).max()) for pose, centre in zip(poses, centres, strict=True)
+    )
+    followed = _followed(centres, smoothing)
+    drift = float(np.linalg.norm(followed - centres, axis=1).max())
+    ahead = sum((camera.R[2] for camera in cameras), np.zeros(3))
+    level = ahead - above * (ahead @ above)
+    if np.linalg.norm(level) < 1e-6 * max(np.linalg.norm(ahead), 1e-12):
+        level = cameras[0].R[1] - above * (cameras[0].R[1] @ above)
+    level = level / np.linalg.norm(level)
+    across = level * np.cos(turn) + np.cross(above, level) * np.sin(turn)
+    forward = across * np.cos(tilt) - above * np.sin(tilt)
+    focal = min(size) / 2 / np.tan(_HALF_VIEW)
+    K = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1.0]])
+    away = (radius + drift) / np.sin(_HALF_VIEW)
+    return [look_at(centre - forward * away, centre, above, K) for centre in followed]
+
+
+def _followed(centres: NDArray[np.float64], smoothing: float) -> NDArray[np.float64]:
+    """Places (n, 3) smoothed over time; the steady part of the path is kept as it is, to its very ends."""
+    from scipy.ndimage import gaussian_filter1d
+
+    if len(centres) < 3:
+        return centres
+    times = np.linspace(-1, 1, len(centres))
+    steady = np.polynomial.polynomial.polyfit(times, centres, 1)
+    line = steady[0] + times[:, None] * steady[1]
+    smooth: NDArray[np.float64] = line + gaussian_filter1d(centres - line, smoothing, axis=0, mode="nearest")
+    return smooth
+
+
+def side_view(
+    vertices: Sequence[ArrayLike] | NDArray[np.floating],
+    faces: ArrayLike,
+    cameras: Sequence[Camera],
+    size: tuple[int, int],
+    *,
+    ground: Plane | None = None,
+    points: ArrayLike | None = None,
+    colors: ArrayLike | None = None,
+    look: Look | None = None,
+    samples: int = 3,
+    up: ArrayLike = UP,
+    turn: float = np.pi / 2,
+    progress: Progress | None = None,
+) -> Iterator[Picture]:
+    """Draw a moving character from the side over a grid on the ground, one picture after the other.
+
+    Parameters
+    ----------
+    vertices, faces, cameras, colors, look, samples, up : see render_sequence.
+    size : (width, height) of the pictures.
+    ground : the plane of the grid; where it is not given, level with the lowest vertex of all frames.
+    points : (p, 3) background points to show, world.
+    turn : how far the view is turned about ``up``, radians.
+    """
+    if not len(vertices) or len(vertices) != len(cameras):
+        raise InputError(f"There are {len(vertices)} poses and {len(cameras)} cameras: give one camera for each pose.")
+    report = progress or silent
+    above = np.asarray(up, np.float64) / np.linalg.norm(up)
+    views = side_cameras(vertices, cameras, size, up=above, turn=turn)
+    if ground is None:
+        ground = Plane(above * min(float((np.asarray(pose) @ above).min()) for pose in vertices), above)
+    cloud = None if points is None else np.asarray(points, np.float64).reshape(-1, 3)
+    with Renderer(faces, size, colors=colors, look=look, samples=samples, up=above) as renderer:
+        report(0.0)
+        for t, view in enumerate(views):
+            pose = np.ascontiguousarray(vertices[t], np.float64)
+            reach = float(np.linalg.norm(np.ptp(pose, axis=0)))
+            back = grid(studio(size), view, ground, step=_nice(reach / 4), reach=3.0 * reach, centre=pose.mean(axis=0))
+            if cloud is not None:
+                back = _dots(back, view, cloud)
+            yield over_frame(renderer, pose, view, back, ground)
+            report((t + 1) / len(views))
+
+
+def grid(
+    picture: Picture, camera: Camera, plane: Plane, *, step: float, reach: float, centre: NDArray[np.float64]
+) -> Picture:
+    """Draw a square grid of lines on a plane, ``step`` world units apart, fading out ``reach`` from ``centre``."""
+    height, width = picture.shape[:2]
+    first = np.cross(plane.normal, [0.0, 1.0, 0.0] if abs(plane.normal[0]) > 0.6 else [1.0, 0.0, 0.0])
+    first = first / np.linalg.norm(first)
+    axes = np.stack([first, np.cross(plane.normal, first)])
+    columns, rows = np.meshgrid(np.arange(width), np.arange(height))
+    rays = camera.rays(np.stack([columns, rows], axis=-1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        z = ((plane.point - camera.centre) @ plane.normal) / (rays @ plane.normal)
+    z = np.where(np.isfinite(z) & (z > 0), z, np.nan)
+    where = camera.centre + z[..., None] * rays
+    away = np.linalg.norm(where - (centre - plane.normal * ((centre - plane.point) @ plane.normal)), axis=-1)
+    strength = np.zeros((height, width), np.float32)
+    for axis in axes:
+        along = (where @ axis) / step
+        # The width of a pixel on the ground, so that far lines thin out instead of flickering.
+        pixel = np.hypot(*np.gradient(along))
+        distance = np.abs(along - np.rint(along))
+        line = np.clip(1.1 - distance / np.maximum(pixel, 1e-9), 0, 1) * np.clip(
+            0.6 / np.maximum(pixel, 1e-9) - 1, 0, 1
+        )
+        strength = np.maximum(strength, np.nan_to_num(line).astype(np.float32))
+    strength *= np.nan_to_num(np.clip(1.0 - away / reach, 0, 1)).astype(np.float32) * 0.8
+    drawn: Picture = np.rint(picture + strength[..., None] * (_FLOOR - picture)).astype(np.uint8)
+    return drawn
+
+
+def _nice(length: float) -> float:
+    """The largest of 1, 2, 5 times a power of ten that is not above a length."""
+    power = 10.0 ** np.floor(np.log10(max(length, 1e-12)))
+    fitting = [factor for factor in (1.0, 2.0, 5.0) if factor * power <= length * 1.0000001]
+    return float(power) * fitting[-1]
+
+
+def _dots(picture: Picture, camera: Camera, points: NDArray[np.float64]) -> Picture:
+    pixels = camera.project(points)
+    shown = np.isfinite(pixels).all(axis=1)
+    places = np.rint(pixels[shown]).astype(int)
+    height, width = picture.shape[:2]
+    inside = (places[:, 0] >= 0) & (places[:, 1] >= 0) & (places[:, 0] < width - 1) & (places[:, 1] < height - 1)
+    out = picture.copy()
+    for dy in (0, 1):
+        for dx in (0, 1):
+            out[places[inside, 1] + dy, places[inside, 0] + dx] = (116, 124, 138)
+    return out
