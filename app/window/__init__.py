@@ -1,1 +1,1 @@
-"""The window: shell, theme, canvas, viewport, timeline and the workspaces."""
+"""The window, made of Qt; it computes nothing: it reads the document and its results, and calls actions."""

@@ -1,0 +1,81 @@
+"""Starting the window: the application, its look, what Qt has to say, and loading the slow libraries behind it."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import os
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import QMessageLogContext, QTimer, QtMsgType, qInstallMessageHandler
+from PySide6.QtWidgets import QApplication
+
+from app.actions.session import Session
+from app.window import fonts, icons, settings, theme
+from app.window.viewport.hosts import Choice
+
+SLOW = ("scipy.sparse.linalg", "cv2", "pyvista", "numba")
+messages: list[str] = []
+
+
+def _heard(kind: QtMsgType, context: QMessageLogContext, text: str) -> None:
+    messages.append(text)
+    if kind in (QtMsgType.QtCriticalMsg, QtMsgType.QtFatalMsg):
+        sys.stderr.write(text + "\n")
+
+
+def make_application() -> QApplication:
+    """The application with its look; the one that runs already is taken."""
+    running = QApplication.instance()
+    application = running if isinstance(running, QApplication) else QApplication(sys.argv[:1])
+    application.setApplicationName("Motionwright")
+    application.setDesktopFileName("motionwright")
+    application.setWindowIcon(icons.application_icon())
+    fonts.apply(application)
+    theme.apply(application, theme.THEMES.get(str(settings.settings().value("look", "dark")), theme.DARK))
+    return application
+
+
+def load_slow_libraries() -> threading.Thread:
+    """Load in a thread what the first drag and the first 3D picture will need."""
+
+    def load() -> None:
+        for name in SLOW:
+            with contextlib.suppress(ImportError):
+                importlib.import_module(name)
+
+    thread = threading.Thread(target=load, name="libraries", daemon=True)
+    thread.start()
+    return thread
+
+
+def open_window(path: Path | None = None, *, sample: bool = False, viewport: Choice = "auto") -> int:
+    """Open the window on a project (or the sample, or an empty one) and run until it is closed; gives the exit code."""
+    os.environ.setdefault("QT_API", "pyside6")
+    qInstallMessageHandler(_heard)
+    application = make_application()
+    from app.window.shell import Shell
+
+    session = Session.open(path, recover=True) if path is not None else _first(sample)
+    shell = Shell(session, viewport=viewport)
+    geometry = settings.settings().value("geometry")
+    if geometry is not None:
+        shell.restoreGeometry(geometry)
+    shell.show()
+    _after(load_slow_libraries)
+    return application.exec()
+
+
+def _first(sample: bool) -> Session:
+    if not sample:
+        return Session.new()
+    from app.window.sample import sample_session
+
+    return sample_session()
+
+
+def _after(call: Callable[[], object]) -> None:
+    QTimer.singleShot(200, lambda: call())
