@@ -62,17 +62,17 @@ class _Bar(Silent):
 
 
 class _PlainBar:
-    """A line a step: when the step changes, or every ten seconds."""
+    """A line when the step changes, one a second at most, or every ten seconds within a step."""
 
     def __init__(self, label: str) -> None:
-        self._label, self._last, self._time = label, "", time.monotonic()
+        self._label, self._last, self._time = label, "", 0.0
         self._lock = threading.Lock()
 
     def __call__(self, fraction: float, label: str = "") -> None:
         label = label or self._label
         with self._lock:
             now = time.monotonic()
-            if label == self._last and now - self._time < 10:
+            if now - self._time < (10 if label == self._last else 1):
                 return
             self._last, self._time = label, now
             print(f"{label} ... {100 * fraction:.0f} %", file=sys.stderr, flush=True)

@@ -116,7 +116,7 @@ def _alignment(context: Context, inputs: tuple[Any, Any, Alignment], world: Worl
 def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter, *needs: Any) -> Any:
     from imitation.propagation import solve_base
 
-    paired, method, keep_volume, mirrors = inputs
+    paired, method, keep_volume, _ = inputs
     tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
     names = [name for name, _ in paired]
     deformer = context.media.deformer(aligned.vertices, aligned.faces, keep_volume)
@@ -129,7 +129,6 @@ def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter
         {name: _intervals(placed) for name, placed in zip(names, contacts, strict=True) if placed},
         method=method,
         confidence={name: track.confidence for name, track in zip(names, tracks, strict=True)},
-        mirrors=dict(mirrors) or None,
         deformer=deformer,
         progress=context.progress,
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),

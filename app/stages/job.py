@@ -78,6 +78,11 @@ class Job:
             self.fraction = sum(self._weights[key] * done for key, done in self._done.items()) / total
         self.listener.progressed(self, self.fraction, stage.label)
 
+    def skip(self, stage: Stage) -> None:
+        """Count a stage as done whose result is there already, or that nothing needs."""
+        with self._lock:
+            self._done[stage.key] = 1.0
+
     def end(self, state: JobState, error: BaseException | None = None) -> None:
         """Set the final state, once."""
         self.state, self.error = state, error

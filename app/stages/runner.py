@@ -147,7 +147,7 @@ class Runner:
         missing = []
         for stage in order:
             if stage.key not in needed or stage in self.cache:
-                job.report(stage, 1.0)
+                job.skip(stage)
                 continue
             if stage.blocked is not None:
                 raise InputError(stage.blocked)

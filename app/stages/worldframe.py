@@ -14,8 +14,6 @@ from imitation import CameraPath
 from imitation.errors import InputError, NoSolution
 
 ASSUMED_DEPTH = 5.0
-LEVEL = np.cos(np.radians(15))
-"""A fitted ground that leans more than this from a level camera's up is taken for a slope, not for the horizon."""
 
 
 def make_world(choice: WorldChoice, path: CameraPath) -> World:
@@ -105,12 +103,7 @@ def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
         ground = plane_ground(path.points, up=(0.0, 0.0, 1.0), selected=False)
     except NoSolution:
         return None, "no level ground was found, a constant depth is assumed"
-    assert ground.plane is not None
-    if ground.plane.normal[2] < LEVEL:
-        # A slope or a flight of stairs: keep the camera's idea of up, and the slope's height under its points.
-        height = float(np.percentile(path.points[ground.plane.used, 2], 5))
-        level = attrs.evolve(ground.plane, normal=np.array([0.0, 0.0, 1.0]), offset=height)
-        return level, f"{ground.name}, which slopes"
+    # A camera held by hand is level sideways, but its pitch is open: the ground says more of what is up.
     return ground.plane, ground.name
 
 
