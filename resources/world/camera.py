@@ -103,3 +103,19 @@ def make_camera(
     R, T = look(eyes, np.asarray(target), rolls)
     K = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1.0]])
     return CameraPath(K=np.repeat(K[None], frames, axis=0), R=R, T=T, verdict="static" if style == "static" else "ok")
+
+
+def lateral_camera(
+    frames: int = 40, *, seed: int = 0, size: tuple[int, int] = (480, 270), focal: float | None = None, way: float = 1.3
+) -> CameraPath:
+    """Walk ``way`` metres sideways before ``scene.room``, looking along +y, f = 0.9 of the width, in a hand."""
+    focal = 0.9 * size[0] if focal is None else focal
+    u = np.linspace(-0.5, 0.5, frames) if frames > 1 else np.zeros(1)
+    slow, quick = shake(frames, 7, seed + 7, 7.0), shake(frames, 7, seed + 2007, 1.5)
+    eyes = np.stack([way * u, np.full(frames, -3.4), np.full(frames, 1.3)], axis=1)
+    eyes = eyes + 0.025 * slow[:, :3] + 0.004 * quick[:, :3]
+    target = np.stack([0.35 * way * u, np.full(frames, 3.0), np.full(frames, 0.95)], axis=1)
+    target = target + 0.08 * slow[:, 3:6] + 0.012 * quick[:, 3:6]
+    R, T = look(eyes, target, 0.008 * slow[:, 6] + 0.002 * quick[:, 6])
+    K = np.array([[focal, 0, (size[0] - 1) / 2], [0, focal, (size[1] - 1) / 2], [0, 0, 1.0]])
+    return CameraPath(K=np.repeat(K[None], frames, axis=0), R=R, T=T)

@@ -64,13 +64,17 @@ class Leg:
 
 @attrs.define(eq=False)
 class Skeleton:
-    """Bones in the order parents first, legs, flesh and the places of the 16 key points in the rest pose."""
+    """Bones in the order parents first, legs, flesh, and in the rest pose the places of the 16 key points and of others.
+
+    ``extras`` are further points that are easy to see and to click on.
+    """
 
     kind: Kind
     bones: dict[str, Bone] = attrs.field(factory=dict)
     flesh: list[Flesh] = attrs.field(factory=list)
     legs: list[Leg] = attrs.field(factory=list)
     keys: dict[str, Array] = attrs.field(factory=dict)
+    extras: dict[str, Array] = attrs.field(factory=dict)
     blend: float = 0.03
 
     def bone(self, name: str, parent: str | None, head: ArrayLike) -> None:
@@ -159,6 +163,16 @@ def quadruped(proportions: Proportions = SUBJECT) -> Skeleton:
         "back": trunk(0.02, 0, 0.72),
         "tail root": at + by(0.0, 0, 0.05),
     }
+    body.extras |= {
+        "tail tip": tail[3] + by(-0.02, 0, 0.01),
+        "brow": head(0.1, 0, 0.075),
+        "withers": trunk(0.28, 0, 0.7),
+    }
+    for side, s in (("left", 1), ("right", -1)):
+        body.extras[f"{side} ear"] = head(-0.02, s * 0.138, -0.04)
+        body.extras[f"{side} neck"] = 0.5 * (trunk(0.34, 0, 0.61) + poll) + by(0.0, s * 0.085, 0)
+        body.extras[f"{side} flank"] = trunk(0.0, s * 0.115, 0.56)
+        body.extras[f"{side} haunch"] = trunk(-0.39, s * 0.15, 0.6)
     return body
 
 
@@ -220,6 +234,8 @@ def biped(proportions: Proportions = SUBJECT) -> Skeleton:
     for side, s in (("left", 1), ("right", -1)):
         _arm(body, side, s, trunk(0, s * 0.19, 1.42))
         _shoe_leg(body, side, s * 0.1 * p.width, trunk(0, s * 0.092, 0.93), p)
+        body.extras[f"{side} waist"] = trunk(0, s * 0.12, 1.12)
+        body.extras[f"{side} chest"] = trunk(0.1, s * 0.09, 1.32)
     return body
 
 
