@@ -22,7 +22,10 @@ def clamp(value, low, high):
 
 @njit(cache=True, nogil=True, fastmath=FAST)
 def read_colours(image, x, y, half, out):
-    """Copy the window of (2 half + 1)^2 pixels around (x, y), bilinear, into out (3, s, s); edges are repeated."""
+    """Copy the window of (2 half + 1)^2 pixels around (x, y), bilinear, into out (s, 3 s); edges are repeated.
+
+    The channels stay side by side, so that every loop over a row runs in vector registers.
+    """
     height, width = image.shape[0], image.shape[1]
     x = clamp(x, -half, width - 1.0 + half)
     y = clamp(y, -half, height - 1.0 + half)
@@ -32,17 +35,12 @@ def read_colours(image, x, y, half, out):
     c, d = (1 - fx) * fy, fx * fy
     size = 2 * half + 1
     if x0 - half >= 0 and y0 - half >= 0 and x0 + half + 1 < width and y0 + half + 1 < height:
+        flat = image.reshape(height, 3 * width)
+        left, right = 3 * (x0 - half), 3 * (x0 + half + 2)
         for j in range(size):
-            upper, lower = image[y0 - half + j], image[y0 - half + j + 1]
-            for i in range(size):
-                k = x0 - half + i
-                for channel in range(3):
-                    out[channel, j, i] = (
-                        a * upper[k, channel]
-                        + b * upper[k + 1, channel]
-                        + c * lower[k, channel]
-                        + d * lower[k + 1, channel]
-                    )
+            upper, lower, row = flat[y0 - half + j, left:right], flat[y0 - half + j + 1, left:right], out[j]
+            for i in range(3 * size):
+                row[i] = a * upper[i] + b * upper[i + 3] + c * lower[i] + d * lower[i + 3]
         return
     for j in range(size):
         upper = image[clamp(y0 - half + j, 0, height - 1)]
@@ -50,9 +48,29 @@ def read_colours(image, x, y, half, out):
         for i in range(size):
             k, n = clamp(x0 - half + i, 0, width - 1), clamp(x0 - half + i + 1, 0, width - 1)
             for channel in range(3):
-                out[channel, j, i] = (
+                out[j, 3 * i + channel] = (
                     a * upper[k, channel] + b * upper[n, channel] + c * lower[k, channel] + d * lower[n, channel]
                 )
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def read_region(image, cx, cy, reach, out):
+    """Copy the whole pixels within ``reach`` of (cx, cy) into out (side, 3 side); edges are repeated."""
+    height, width = image.shape[0], image.shape[1]
+    side = 2 * reach + 1
+    if cx >= reach and cy >= reach and cx + reach < width and cy + reach < height:
+        flat = image.reshape(height, 3 * width)
+        for j in range(side):
+            row, into = flat[cy - reach + j, 3 * (cx - reach) : 3 * (cx + reach + 1)], out[j]
+            for i in range(3 * side):
+                into[i] = row[i]
+        return
+    for j in range(side):
+        source = image[clamp(cy - reach + j, 0, height - 1)]
+        for i in range(side):
+            k = clamp(cx - reach + i, 0, width - 1)
+            for channel in range(3):
+                out[j, 3 * i + channel] = source[k, channel]
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)

@@ -38,10 +38,10 @@ class PaperOptions:
 
 
 def _template(clip: PreparedClip, frame: int, place: Place, level: int, half: int) -> NDArray[np.float32]:
-    from imitation.tracking.paper_kernels import read_rows
+    from imitation.tracking.kernels import read_colours
 
     rows = np.empty((2 * half + 1, 3 * (2 * half + 1)), np.float32)
-    read_rows(clip.colours(frame)[level], place[0] / 2**level, place[1] / 2**level, half, rows)
+    read_colours(clip.colours(frame)[level], place[0] / 2**level, place[1] / 2**level, half, rows)
     return rows
 
 
@@ -64,6 +64,7 @@ def _one_pass(
     report: Progress,
 ) -> tuple[Array, Array]:
     """One pass over the frames of ``order`` (its first is given): new path (m, 2) and chain cost per frame (m,)."""
+    from imitation.tracking.kernels import read_colours
     from imitation.tracking.paper_kernels import MOST, advance, place_between_pixels, prune
 
     level = LEVELS - 1 - step
@@ -74,9 +75,7 @@ def _one_pass(
     counts = np.ones(frames, np.int64)
     windows = np.zeros((2, MOST, size), np.float32)
     first = np.empty(ends.left.shape, np.float32)
-    from imitation.tracking.paper_kernels import read_rows
-
-    read_rows(clip.colours(order[0])[level], path[0, 0] / scale, path[0, 1] / scale, options.window // 2, first)
+    read_colours(clip.colours(order[0])[level], path[0, 0] / scale, path[0, 1] / scale, options.window // 2, first)
     windows[0, 0], places[0, 0] = first.ravel(), path[0] / scale
     for i in range(1, frames):
         now = windows[i % 2]

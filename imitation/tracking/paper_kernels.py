@@ -8,29 +8,9 @@ from math import floor
 import numpy as np
 from numba import njit
 
-from imitation.tracking.kernels import FAST, clamp
+from imitation.tracking.kernels import FAST, clamp, read_region
 
 MOST = 20  # candidates a frame (paper A, Appendix)
-
-
-@njit(cache=True, nogil=True, fastmath=FAST)
-def read_rows(image, x, y, half, out):
-    """Window around (x, y), bilinear, as rows of interleaved channels (s, 3 s); edges are repeated."""
-    height, width = image.shape[0], image.shape[1]
-    x0, y0 = floor(x), floor(y)
-    fx, fy = np.float32(x - x0), np.float32(y - y0)
-    a, b = (1 - fx) * (1 - fy), fx * (1 - fy)
-    c, d = (1 - fx) * fy, fx * fy
-    size = 2 * half + 1
-    for j in range(size):
-        upper = image[clamp(y0 - half + j, 0, height - 1)]
-        lower = image[clamp(y0 - half + j + 1, 0, height - 1)]
-        for i in range(size):
-            k, n = clamp(x0 - half + i, 0, width - 1), clamp(x0 - half + i + 1, 0, width - 1)
-            for channel in range(3):
-                out[j, 3 * i + channel] = (
-                    a * upper[k, channel] + b * upper[n, channel] + c * lower[k, channel] + d * lower[n, channel]
-                )
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
@@ -67,25 +47,6 @@ def blend_templates(left, right, weight):
     return mixed, rest
 
 
-@njit(cache=True, nogil=True, fastmath=FAST)
-def _region(image, cx, cy, reach, out):
-    height, width = image.shape[0], image.shape[1]
-    side = 2 * reach + 1
-    if cx >= reach and cy >= reach and cx + reach < width and cy + reach < height:
-        for j in range(side):
-            row = image[cy - reach + j, cx - reach : cx + reach + 1]
-            for i in range(side):
-                for channel in range(3):
-                    out[j, 3 * i + channel] = row[i, channel]
-        return
-    for j in range(side):
-        row = image[clamp(cy - reach + j, 0, height - 1)]
-        for i in range(side):
-            k = clamp(cx - reach + i, 0, width - 1)
-            for channel in range(3):
-                out[j, 3 * i + channel] = row[k, channel]
-
-
 @njit(cache=True, nogil=True)
 def prune(image, x, y, radius, spacing, left, right, weight, places, windows, costs):
     """Algorithm 1: up to 20 whole pixels of the disc around (x, y) with small e (eq. 13), ``spacing`` apart.
@@ -100,7 +61,7 @@ def prune(image, x, y, radius, spacing, left, right, weight, places, windows, co
     reach = floor(radius)
     side = 2 * reach + 1
     region = np.empty((side + 2 * half, 3 * (side + 2 * half)), np.float32)
-    _region(image, cx, cy, reach + half, region)
+    read_region(image, cx, cy, reach + half, region)
     mixed, rest = blend_templates(left, right, weight)
     scores = np.full(side * side, np.inf, np.float32)
     for j in range(side):
@@ -154,7 +115,7 @@ def place_between_pixels(image, x, y, left, right, weight):
     size = left.shape[0]
     half = (size - 1) // 2
     region = np.empty((size + 2, 3 * (size + 2)), np.float32)
-    _region(image, int(x), int(y), half + 1, region)
+    read_region(image, int(x), int(y), half + 1, region)
     mixed, _ = blend_templates(left, right, weight)
     middle = _difference(region, 1, 3, mixed)
     a, b = _difference(region, 1, 0, mixed), _difference(region, 1, 6, mixed)

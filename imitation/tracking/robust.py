@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from imitation.progress import Progress, part
 from imitation.tracking.chain import Array, Chain, Place
@@ -84,16 +85,24 @@ def _guesses(
     return np.stack(paths, axis=1), np.stack(centres, axis=1)
 
 
+@attrs.frozen(eq=False)
 class _Appearance:
-    """Templates of the clicks at full size and a quarter of it."""
+    """Templates of the clicks (one or two) at full size and at a quarter of it, with their norms."""
 
-    def __init__(self, clip: PreparedClip, frame: int, place: Place, half: int) -> None:
+    fine: NDArray[np.float32]
+    norms: Array
+    coarse: NDArray[np.float32]
+    coarse_norms: Array
+
+    @classmethod
+    def of(cls, clip: PreparedClip, clicks: Sequence[tuple[int, Place]], half: int) -> _Appearance:
         from imitation.tracking.robust_kernels import make_template
 
-        levels = clip.colours(frame)
-        self.fine, self.norm = make_template(levels[0], place[0], place[1], half)
-        coarse_half = max(2, round(half / 4))
-        self.coarse, self.coarse_norm = make_template(levels[2], place[0] / 4, place[1] / 4, coarse_half)
+        fine = [make_template(clip.colours(frame)[0], x, y, half) for frame, (x, y) in clicks]
+        small = max(2, round(half / 4))
+        coarse = [make_template(clip.colours(frame)[2], x / 4, y / 4, small) for frame, (x, y) in clicks]
+        stacks = [np.stack([part[i] for part in found]) for found in (fine, coarse) for i in (0, 1)]
+        return cls(*stacks)
 
 
 def solve_robust(
@@ -115,11 +124,10 @@ def solve_robust(
     half = options.window // 2
     paths, centres = _guesses(clip, order, start, stop, options.local_window // 2, part(progress, 0.0, 0.4))
     frames, guesses = paths.shape[:2]
-    left = _Appearance(clip, order[0], start, half)
-    right = left if stop is None else _Appearance(clip, order[-1], stop, half)
+    clicks = [(order[0], start)] if stop is None else [(order[0], start), (order[-1], stop)]
+    looks = _Appearance.of(clip, clicks, half)
     searching = options.look_alikes > 0 and not clip.preview
-    templates = [left] if stop is None else [left, right]
-    most = guesses + (options.look_alikes * len(templates) * centres.shape[1] if searching else 0)
+    most = guesses + (options.look_alikes * len(clicks) * centres.shape[1] if searching else 0)
     places, counts = np.zeros((frames, most, 2)), np.ones(frames, np.int64)
     facts, ahead, back = np.zeros((frames, most, 3)), np.zeros((frames, most, 2)), np.zeros((frames, most, 2))
     report = part(progress, 0.4, 1.0)
@@ -133,16 +141,13 @@ def solve_robust(
             if searching:
                 radius = min(10.0 + 3 * gap, options.reach)
                 for x, y in centres[i]:
-                    for t in templates:
-                        count = search(
-                            levels[0], levels[2], 4, x, y, radius, t.fine, t.norm, t.coarse, t.coarse_norm,
-                            options.look_alikes, places[i], count,
-                        )  # fmt: skip
+                    count = search(
+                        levels[0], levels[2], 4, x, y, radius, looks.fine, looks.norms, looks.coarse,
+                        looks.coarse_norms, options.look_alikes, places[i], count,
+                    )  # fmt: skip
             counts[i] = count
         weight = 1.0 if stop is None else (frames - 1 - i) / (frames - 1)
-        describe(
-            levels[0], places[i], counts[i], left.fine, left.norm, right.fine, right.norm, weight, half, mask, facts[i]
-        )
+        describe(levels[0], places[i], counts[i], looks.fine, looks.norms, weight, mask, facts[i])
         for other, out in ((i + 1, ahead), (i - 1, back)):
             if 0 <= other < frames and not clip.preview:
                 bits = clip.flow(frame, order[other])

@@ -6,51 +6,69 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from imitation.tracking.kernels import FAST, clamp, flow_at, outside_mask, read_colours
+from imitation.tracking.kernels import FAST, clamp, flow_at, outside_mask, read_colours, read_region
 
 FLATNESS = 100.0  # added to norms, so that windows without texture match nothing
 
 
 @njit(cache=True, nogil=True)
 def make_template(image, x, y, half):
-    """Window (3, s, s) around (x, y) with the mean of each channel taken off, and its norm."""
+    """Window (s, 3 s) around (x, y) with the mean of each channel taken off, and its norm."""
     size = 2 * half + 1
-    template = np.empty((3, size, size), np.float32)
+    template = np.empty((size, 3 * size), np.float32)
     read_colours(image, x, y, half, template)
     energy = 0.0
     for channel in range(3):
-        template[channel] -= template[channel].mean()
-        energy += (template[channel] ** 2).sum()
+        template[:, channel::3] -= template[:, channel::3].mean()
+    for value in template.ravel():
+        energy += value * value
     return template, np.sqrt(energy)
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def correlate(window, template, norm):
-    """Zero-mean normalised correlation of a raw window (3, s, s) with a template; 0 for flat windows."""
-    size = window.shape[1]
-    area = size * size
-    product, energy = np.float32(0), np.float32(0)
+def _spread(totals, square, area):
+    """Energy of a window about the mean of each channel, from the sums of its columns and of its squares."""
+    means = np.float32(0)
     for channel in range(3):
-        total, square = np.float32(0), np.float32(0)
-        for j in range(size):
-            for i in range(size):
-                value = window[channel, j, i] - np.float32(128)
-                total += value
-                square += value * value
-                product += value * template[channel, j, i]
-        energy += square - total * total / area
-    return product / ((np.sqrt(max(energy, np.float32(0))) + FLATNESS) * (norm + FLATNESS))
+        total = np.float32(0)
+        for i in range(channel, totals.shape[0], 3):
+            total += totals[i]
+        means += total * total
+    return max(square - means / area, np.float32(0))
+
+
+@njit(cache=True, nogil=True, fastmath=FAST)
+def correlate(region, row, column, template, norm, totals):
+    """Zero-mean normalised correlation of the window at (row, column) of a region with a template; 0 when flat.
+
+    ``column`` counts channels; ``totals`` (3 s,) is scratch.
+    """
+    size, across = template.shape
+    totals[:] = 0
+    product, square = np.float32(0), np.float32(0)
+    for j in range(size):
+        now, wanted = region[row + j, column : column + across], template[j]
+        for i in range(across):
+            value = now[i] - np.float32(128)
+            totals[i] += value
+            square += value * value
+            product += value * wanted[i]
+    spread = _spread(totals, square, size * size)
+    flat = np.float32(FLATNESS * size / 31.0)
+    return product / ((np.sqrt(spread) + flat) * (norm + flat))
 
 
 @njit(cache=True, nogil=True)
-def describe(image, places, count, left, left_norm, right, right_norm, weight, half, mask, out):
+def describe(image, places, count, templates, norms, weight, mask, out):
     """Correlation of each place with both templates and its data cost: out[:, 0..2] = (cost, left, right)."""
-    window = np.empty((3, 2 * half + 1, 2 * half + 1), np.float32)
+    size, across = templates.shape[1], templates.shape[2]
+    window, totals = np.empty((size, across), np.float32), np.empty(across, np.float32)
+    last = templates.shape[0] - 1
     for k in range(count):
         x, y = places[k, 0], places[k, 1]
-        read_colours(image, x, y, half, window)
-        a = correlate(window, left, left_norm) if weight > 0 else 0.0
-        b = correlate(window, right, right_norm) if weight < 1 else 0.0
+        read_colours(image, x, y, (size - 1) // 2, window)
+        a = correlate(window, 0, 0, templates[0], norms[0], totals) if weight > 0 else 0.0
+        b = correlate(window, 0, 0, templates[last], norms[last], totals) if weight < 1 else 0.0
         miss = weight * (1 - a) + (1 - weight) * (1 - b)
         out[k, 0] = 6 * min(miss, 0.7) + 10 * outside_mask(mask, x, y)
         out[k, 1], out[k, 2] = a, b
@@ -64,102 +82,114 @@ def flows_at(bits, table, scale, places, count, mask, out):
 
 
 @njit(cache=True, nogil=True, fastmath=FAST)
-def _coarse_scores(image, cx, cy, radius, template, norm, half):
-    """Correlation at whole pixels of a coarse level around (cx, cy): (2 radius + 1)^2, -1 outside the picture."""
-    height, width = image.shape[0], image.shape[1]
-    side, size = 2 * radius + 1, 2 * half + 1
-    wide = side + size - 1
-    region = np.empty((3, wide, wide), np.float32)
-    for j in range(wide):
-        row = image[clamp(cy - radius - half + j, 0, height - 1)]
-        for i in range(wide):
-            k = clamp(cx - radius - half + i, 0, width - 1)
-            for channel in range(3):
-                region[channel, j, i] = np.float32(row[k, channel]) - np.float32(128)
-    products = np.zeros((side, side), np.float32)
-    energies = np.zeros((side, side), np.float32)
-    for channel in range(3):
-        total = np.zeros((side, side), np.float32)
-        across, across_square = np.zeros((wide, side), np.float32), np.zeros((wide, side), np.float32)
-        for j in range(wide):
-            for b in range(size):
-                for i in range(side):
-                    value = region[channel, j, i + b]
-                    across[j, i] += value
-                    across_square[j, i] += value * value
-        for j in range(side):
-            for b in range(size):
-                for i in range(side):
-                    total[j, i] += across[j + b, i]
-                    energies[j, i] += across_square[j + b, i]
-            for a in range(size):
-                for b in range(size):
-                    factor = template[channel, a, b]
-                    for i in range(side):
-                        products[j, i] += factor * region[channel, j + a, i + b]
-        for j in range(side):
-            for i in range(side):
-                energies[j, i] -= total[j, i] * total[j, i] / (size * size)
-    # The finest level's flatness constant in this window's smaller norm.
+def _coarse_scores(region, side, template, norm, out):
+    """Correlation of a template at all side x side places of a region, into out."""
+    size = template.shape[0]
+    sums = np.zeros((side, 3 * side), np.float32)
+    squares = np.zeros((side, 3 * side), np.float32)
+    line, line_square = np.zeros(3 * side, np.float32), np.zeros(3 * side, np.float32)
+    products = np.zeros(3 * side, np.float32)
+    for j in range(side + size - 1):
+        line[:], line_square[:] = 0, 0
+        for b in range(size):
+            now = region[j, 3 * b : 3 * (b + side)]
+            for i in range(3 * side):
+                line[i] += now[i]
+                line_square[i] += now[i] * now[i]
+        for k in range(max(j - size + 1, 0), min(j + 1, side)):
+            total, square = sums[k], squares[k]
+            for i in range(3 * side):
+                total[i] += line[i]
+                square[i] += line_square[i]
     flat = np.float32(FLATNESS * size / 31.0)
     for j in range(side):
+        products[:] = 0
+        for a in range(size):
+            row = region[j + a]
+            for b in range(size):
+                red, green, blue = template[a, 3 * b], template[a, 3 * b + 1], template[a, 3 * b + 2]
+                now = row[3 * b : 3 * (b + side)]
+                for i in range(side):
+                    products[i] += red * now[3 * i] + green * now[3 * i + 1] + blue * now[3 * i + 2]
         for i in range(side):
-            products[j, i] /= (np.sqrt(max(energies[j, i], np.float32(0))) + flat) * (norm + flat)
-            if not (0 <= cx - radius + i < width and 0 <= cy - radius + j < height):
-                products[j, i] = -1
-    return products
+            spread = np.float32(0)
+            for channel in range(3):
+                spread += squares[j, 3 * i + channel] - sums[j, 3 * i + channel] ** 2 / (size * size)
+            out[j, i] = products[i] / ((np.sqrt(max(spread, np.float32(0))) + flat) * (norm + flat))
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _score(region, row, column, template, norm, totals, known):
+    if known[row, column] < -1:
+        known[row, column] = correlate(region, row, 3 * column, template, norm, totals)
+    return known[row, column]
 
 
 @njit(cache=True, nogil=True)
-def search(fine, coarse, step, x, y, radius, template, norm, coarse_template, coarse_norm, most, places, count):
-    """Append up to ``most`` look-alikes of a template around (x, y) to places; returns the new count.
+def search(fine, coarse, step, x, y, radius, templates, norms, coarse_templates, coarse_norms, most, places, count):
+    """Append up to ``most`` look-alikes of each template around (x, y) to places; returns the new count.
 
     Peaks are found at a level ``step`` times coarser, then climbed at full size and placed between pixels by a
     parabola.
     """
-    half, coarse_half = (template.shape[1] - 1) // 2, (coarse_template.shape[1] - 1) // 2
     height, width = fine.shape[0], fine.shape[1]
+    size, coarse_size = templates.shape[1], coarse_templates.shape[1]
+    half, coarse_half = (size - 1) // 2, (coarse_size - 1) // 2
     cx, cy, reach = int(np.rint(x / step)), int(np.rint(y / step)), int(np.ceil(radius / step))
-    scores = _coarse_scores(coarse, cx, cy, reach, coarse_template, coarse_norm, coarse_half)
-    side = 2 * reach + 1
-    window = np.empty((3, 2 * half + 1, 2 * half + 1), np.float32)
-    around = np.empty((3, 3))
-    for _ in range(most):
-        best, bj, bi = 0.2, -1, -1
-        for j in range(side):
-            for i in range(side):
-                if scores[j, i] > best:
-                    best, bj, bi = scores[j, i], j, i
-        if bj < 0:
-            break
-        for j in range(max(bj - 1, 0), min(bj + 2, side)):
-            for i in range(max(bi - 1, 0), min(bi + 2, side)):
-                scores[j, i] = -1
-        px, py = int((cx - reach + bi) * step), int((cy - reach + bj) * step)
-        px, py = clamp(px, 0, width - 1), clamp(py, 0, height - 1)
-        read_colours(fine, px, py, half, window)
-        middle = correlate(window, template, norm)
-        for climb in range(2 * step + 2):
-            stride = 2 if climb < step // 2 else 1
-            top, tx, ty = middle, px, py
-            for j in range(3):
-                for i in range(3):
-                    if i == 1 and j == 1:
-                        around[j, i] = middle
-                        continue
-                    read_colours(fine, px + (i - 1) * stride, py + (j - 1) * stride, half, window)
-                    around[j, i] = correlate(window, template, norm)
-                    qx, qy = px + (i - 1) * stride, py + (j - 1) * stride
-                    if around[j, i] > top and 0 <= qx < width and 0 <= qy < height:
-                        top, tx, ty = around[j, i], qx, qy
-            if tx == px and ty == py and stride == 1:
+    cx, cy = clamp(cx, 0, coarse.shape[1] - 1), clamp(cy, 0, coarse.shape[0] - 1)
+    side, wide = 2 * reach + 1, (reach + 2) * step
+    coarse_region = np.empty((side + 2 * coarse_half, 3 * (side + 2 * coarse_half)), np.float32)
+    read_region(coarse, cx, cy, reach + coarse_half, coarse_region)
+    coarse_region -= np.float32(128)
+    fine_x, fine_y = min(cx * step, width - 1), min(cy * step, height - 1)
+    region = np.empty((2 * (wide + half) + 1, 3 * (2 * (wide + half) + 1)), np.float32)
+    read_region(fine, fine_x, fine_y, wide + half, region)
+    scores, totals = np.empty((side, side), np.float32), np.empty(3 * size, np.float32)
+    known = np.empty((2 * wide + 1, 2 * wide + 1), np.float32)
+    for which in range(templates.shape[0]):
+        template, norm = templates[which], norms[which]
+        _coarse_scores(coarse_region, side, coarse_templates[which], coarse_norms[which], scores)
+        known[:] = -2
+        for _ in range(most):
+            best, bj, bi = 0.2, -1, -1
+            for j in range(side):
+                for i in range(side):
+                    if scores[j, i] > best:
+                        best, bj, bi = scores[j, i], j, i
+            if bj < 0:
                 break
-            px, py, middle = tx, ty, top
-        sx = _vertex(around[1, 0], middle, around[1, 2])
-        sy = _vertex(around[0, 1], middle, around[2, 1])
-        places[count, 0], places[count, 1] = px + sx, py + sy
-        count += 1
+            scores[max(bj - 1, 0) : bj + 2, max(bi - 1, 0) : bi + 2] = -1
+            row, column = bj * step + wide - reach * step, bi * step + wide - reach * step
+            row, column = _climb(region, row, column, template, norm, totals, known, step // 2)
+            px, py = fine_x - wide + column, fine_y - wide + row
+            if not (0 <= px < width and 0 <= py < height):
+                continue
+            middle = _score(region, row, column, template, norm, totals, known)
+            left = _score(region, row, column - 1, template, norm, totals, known)
+            right = _score(region, row, column + 1, template, norm, totals, known)
+            above = _score(region, row - 1, column, template, norm, totals, known)
+            below = _score(region, row + 1, column, template, norm, totals, known)
+            places[count, 0] = px + _vertex(left, middle, right)
+            places[count, 1] = py + _vertex(above, middle, below)
+            count += 1
     return count
+
+
+@njit(cache=True, nogil=True)
+def _climb(region, row, column, template, norm, totals, known, stride):
+    """Go to the best of eight neighbours until there is none better, with shorter and shorter steps."""
+    last = known.shape[0] - 2
+    while stride > 0:
+        top, to_row, to_column = _score(region, row, column, template, norm, totals, known), row, column
+        for j in range(max(row - stride, 1), min(row + stride, last) + 1, stride):
+            for i in range(max(column - stride, 1), min(column + stride, last) + 1, stride):
+                value = _score(region, j, i, template, norm, totals, known)
+                if value > top:
+                    top, to_row, to_column = value, j, i
+        if to_row == row and to_column == column:
+            stride //= 2
+        row, column = to_row, to_column
+    return row, column
 
 
 @njit(cache=True, nogil=True)
