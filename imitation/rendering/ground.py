@@ -75,8 +75,8 @@ def ground_shadow(
         there = np.isfinite(z) & (z > 0)
     points = camera.centre + z[there, None] * rays[there]
     radius = key.radius
-    cast = blocked(points, key, surface=False, least=0.02 * radius, spread=0.10, fade=2.2 * radius, count=32)
-    contact = blocked(points, sky, surface=False, least=0.07 * radius, fade=0.16 * radius, count=48)
+    cast = blocked(points, key, surface=False, least=0.02 * radius, spread=0.10, fade=2.2 * radius, count=20)
+    contact = blocked(points, sky, surface=False, least=0.07 * radius, fade=0.16 * radius, count=28)
     dark = 1 - (1 - look.shadow * cast) * (1 - look.contact * np.minimum(1.0, 1.25 * contact))
     patch = np.zeros(rows.shape, np.float32)
     patch.reshape(-1)[there] = dark

@@ -1,19 +1,18 @@
-# mypy: disable-error-code="untyped-decorator"
 """Pictures of one mesh: lit, anti-aliased, with depth."""
 
 from __future__ import annotations
 
-from typing import Any, Self
+from typing import Self
 
 import attrs
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from imitation.errors import InputError
 from imitation.geometry.projection import Camera
 from imitation.rendering.light import LightMap, Look, blocked, key_direction, light_map
 from imitation.rendering.raster import rasterise
+from imitation.rendering.shade import shade
 
 UP = (0.0, 0.0, 1.0)
 _BAND = 1 << 22
@@ -112,7 +111,7 @@ class Renderer:
             last = min(first + rows, bottom)
             band = Camera(camera.K - np.array([[0, 0, 0], [0, 0, first], [0, 0, 0.0]]), camera.R, camera.T)
             seen = rasterise(v, self.faces, band, (self.size[0], last - first), self.samples)
-            _shade(
+            shade(
                 seen.depth, seen.face, seen.weights, self.samples, self.faces, v, normals, albedo, lit, 1.0 - hidden,
                 camera.centre, key_now, np.array(self.look.key_light), self.look.gloss,
                 rgba[first:last], depth[first:last],
@@ -177,66 +176,3 @@ def linear(colors: NDArray[np.number]) -> NDArray[np.float64]:
     s = colors / 255.0
     values: NDArray[np.float64] = np.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
     return values
-
-
-@njit(cache=True, nogil=True)
-def _shade(
-    z: Any, face: Any, weights: Any, samples: int, faces: Any, vertices: Any, normals: Any, albedo: Any, lit: Any,
-    open_key: Any, eye: Any, key: Any, key_light: Any, gloss: float, rgba: Any, depth: Any,
-) -> None:  # fmt: skip
-    height, width = depth.shape
-    color = np.empty(3)
-    for row in range(height):
-        for column in range(width):
-            total = np.zeros(3)
-            hits = 0
-            for dy in range(samples):
-                for dx in range(samples):
-                    y, x = row * samples + dy, column * samples + dx
-                    f = face[y, x]
-                    if f < 0:
-                        continue
-                    hits += 1
-                    depth[row, column] = min(depth[row, column], z[y, x])
-                    i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-                    a, b = weights[y, x, 0], weights[y, x, 1]
-                    c = 1.0 - a - b
-                    n = a * normals[i] + b * normals[j] + c * normals[k]
-                    view = eye - (a * vertices[i] + b * vertices[j] + c * vertices[k])
-                    view /= np.sqrt(view[0] ** 2 + view[1] ** 2 + view[2] ** 2) + 1e-30
-                    n /= np.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2) + 1e-30
-                    facing = n[0] * view[0] + n[1] * view[1] + n[2] * view[2]
-                    p, q = vertices[j] - vertices[i], vertices[k] - vertices[i]
-                    outward = (
-                        (p[1] * q[2] - p[2] * q[1]) * view[0]
-                        + (p[2] * q[0] - p[0] * q[2]) * view[1]
-                        + (p[0] * q[1] - p[1] * q[0]) * view[2]
-                    )
-                    if outward < 0:
-                        # A surface seen from behind is lit from the side it is seen from.
-                        n = -n
-                        facing = -facing
-                    facing = max(facing, 0.0)
-                    # Wrapped a little, so that the edge of the shade is soft.
-                    toward = (n[0] * key[0] + n[1] * key[1] + n[2] * key[2] + 0.12) / 1.12
-                    free = a * open_key[i] + b * open_key[j] + c * open_key[k]
-                    half = key + view
-                    half /= np.sqrt(half[0] ** 2 + half[1] ** 2 + half[2] ** 2) + 1e-30
-                    shine = max(0.0, n[0] * half[0] + n[1] * half[1] + n[2] * half[2]) ** 28 * gloss
-                    rim = (1.0 - facing) ** 4 * 0.10
-                    for channel in range(3):
-                        body = a * albedo[i, channel] + b * albedo[j, channel] + c * albedo[k, channel]
-                        around = a * lit[i, channel] + b * lit[j, channel] + c * lit[k, channel]
-                        direct = max(0.0, toward) * free * key_light[channel]
-                        color[channel] = body * (around + direct) + direct * shine + around * rim
-                    total += color
-            if hits == 0:
-                continue
-            for channel in range(3):
-                value = total[channel] / hits
-                # Highlights roll off instead of clipping.
-                if value > 0.7:
-                    value = 0.7 + 0.3 * (1.0 - np.exp(-(value - 0.7) / 0.3))
-                encoded = 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055
-                rgba[row, column, channel] = np.uint8(min(max(encoded, 0.0), 1.0) * 255 + 0.5)
-            rgba[row, column, 3] = np.uint8(255.0 * hits / samples**2 + 0.5)

@@ -1,10 +1,13 @@
+# mypy: disable-error-code="untyped-decorator"
 """A view from the side: what depth does, which the film's own camera cannot show."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
+from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from imitation.errors import InputError
@@ -15,7 +18,7 @@ from imitation.rendering.ground import Plane
 from imitation.rendering.light import Look, look_at
 from imitation.rendering.mesh import UP, Renderer
 
-_HALF_VIEW = np.radians(14)
+_HALF_VIEW = float(np.radians(14))
 _FLOOR = np.array([150, 155, 163], np.float32)
 
 
@@ -44,14 +47,12 @@ def side_cameras(
     above = np.asarray(up, np.float64) / np.linalg.norm(up)
     poses = [np.asarray(pose, np.float64) for pose in vertices]
     centres = np.array([(pose.min(axis=0) + pose.max(axis=0)) / 2 for pose in poses])
-    radius = max(
-        float(np.linalg.norm(pose - centre, axis=1).max()) for pose, centre in zip(poses, centres, strict=True)
-    )
+    radius = max(float(np.linalg.norm(pose - place, axis=1).max()) for pose, place in zip(poses, centres, strict=True))
     followed = _followed(centres, smoothing)
     drift = float(np.linalg.norm(followed - centres, axis=1).max())
     ahead = sum((camera.R[2] for camera in cameras), np.zeros(3))
     level = ahead - above * (ahead @ above)
-    if np.linalg.norm(level) < 1e-6 * max(np.linalg.norm(ahead), 1e-12):
+    if float(np.linalg.norm(level)) < 1e-6 * max(float(np.linalg.norm(ahead)), 1e-12):
         level = cameras[0].R[1] - above * (cameras[0].R[1] @ above)
     level = level / np.linalg.norm(level)
     across = level * np.cos(turn) + np.cross(above, level) * np.sin(turn)
@@ -128,26 +129,39 @@ def grid(
     first = np.cross(plane.normal, [0.0, 1.0, 0.0] if abs(plane.normal[0]) > 0.6 else [1.0, 0.0, 0.0])
     first = first / np.linalg.norm(first)
     axes = np.stack([first, np.cross(plane.normal, first)])
-    columns, rows = np.meshgrid(np.arange(width), np.arange(height))
-    rays = camera.rays(np.stack([columns, rows], axis=-1))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        z = ((plane.point - camera.centre) @ plane.normal) / (rays @ plane.normal)
-    z = np.where(np.isfinite(z) & (z > 0), z, np.nan)
-    where = camera.centre + z[..., None] * rays
-    away = np.linalg.norm(where - (centre - plane.normal * ((centre - plane.point) @ plane.normal)), axis=-1)
     strength = np.zeros((height, width), np.float32)
-    for axis in axes:
-        along = (where @ axis) / step
-        # The width of a pixel on the ground, so that far lines thin out instead of flickering.
-        pixel = np.hypot(*np.gradient(along))
-        distance = np.abs(along - np.rint(along))
-        line = np.clip(1.1 - distance / np.maximum(pixel, 1e-9), 0, 1) * np.clip(
-            0.6 / np.maximum(pixel, 1e-9) - 1, 0, 1
-        )
-        strength = np.maximum(strength, np.nan_to_num(line).astype(np.float32))
-    strength *= np.nan_to_num(np.clip(1.0 - away / reach, 0, 1)).astype(np.float32) * 0.8
-    drawn: Picture = np.rint(picture + strength[..., None] * (_FLOOR - picture)).astype(np.uint8)
+    offset = float((plane.point - camera.centre) @ plane.normal)
+    below = centre - plane.normal * ((centre - plane.point) @ plane.normal)
+    # Everything a pixel's ray needs is linear in the pixel: across = rays @ axis and steepness = rays @ normal.
+    toward = camera.R.T @ np.linalg.inv(camera.K)
+    parts = np.stack([axes[0] @ toward, axes[1] @ toward, plane.normal @ toward])
+    starts = np.array([axes[0] @ camera.centre, axes[1] @ camera.centre])
+    _lines(parts, starts, axes @ below, offset, step, reach, strength)
+    drawn: Picture = np.rint(picture + 0.8 * strength[..., None] * (_FLOOR - picture)).astype(np.uint8)
     return drawn
+
+
+@njit(cache=True, nogil=True)
+def _lines(parts: Any, starts: Any, middle: Any, offset: float, step: float, reach: float, strength: Any) -> None:
+    height, width = strength.shape
+    for y in range(height):
+        for x in range(width):
+            steep = parts[2, 0] * x + parts[2, 1] * y + parts[2, 2]
+            if steep == 0.0 or offset / steep <= 0.0:
+                continue
+            z = offset / steep
+            away, best = 0.0, 0.0
+            for k in range(2):
+                ray = parts[k, 0] * x + parts[k, 1] * y + parts[k, 2]
+                along = (starts[k] + z * ray) / step
+                # The width of a pixel on the ground, so that far lines thin out instead of flickering.
+                dx = z * (parts[k, 0] - ray * parts[2, 0] / steep) / step
+                dy = z * (parts[k, 1] - ray * parts[2, 1] / steep) / step
+                pixel = np.sqrt(dx * dx + dy * dy) + 1e-12
+                line = min(max(1.1 - abs(along - np.rint(along)) / pixel, 0.0), 1.0)
+                best = max(best, line * min(max(0.6 / pixel - 1.0, 0.0), 1.0))
+                away += (along * step - middle[k]) ** 2
+            strength[y, x] = best * max(1.0 - np.sqrt(away) / reach, 0.0)
 
 
 def _nice(length: float) -> float:
