@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -44,8 +45,13 @@ def write_usd(path: Path, sequence: MeshSequence, progress: Progress | None = No
         colors = mesh.CreateDisplayColorPrimvar(pxr.UsdGeom.Tokens.vertex)
         linear = np.ascontiguousarray(to_linear(sequence.colors) / np.float32(65535), np.float32)
         colors.Set(pxr.Vt.Vec3fArray.FromNumpy(linear))
-    if not stage.GetRootLayer().Export(str(path)):
-        raise OSError(f"{path} was not exported")
+    try:
+        exported = stage.GetRootLayer().Export(str(path))
+    except pxr.Tf.ErrorException as error:
+        full = "No space left" in str(error) or "File too large" in str(error)
+        raise OSError(errno.ENOSPC if full else errno.EIO, "the USD library failed") from error
+    if not exported:
+        raise OSError(errno.EIO, "the USD library failed")
     report(1.0)
 
 
