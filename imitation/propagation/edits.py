@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 Committed = Mapping[int, ArrayLike]
 """vertex -> place (3,): positions of all key points and of the control vertices in one edited frame."""
 
+DEPTH_PULL = 0.1
+"""Softness of the pull to its depth of a key point that went back on its ray: between free and held."""
+
 
 def commit_edit(
     base: Base,
@@ -56,7 +59,9 @@ def edited_pose(base: Base, frame: int, committed: Committed, *, deformer: Defor
     deformer = deformer or make_deformer(base.rest, base.faces)
     points = dict(zip(base.keys.vertices.tolist(), base.lifted[frame], strict=True))
     points.update({int(vertex): np.asarray(place, np.float64) for vertex, place in committed.items()})
-    return deformer.solve(points, start=base.vertices[frame])
+    pose = deformer.solve(points, start=base.vertices[frame])
+    pose[list(points)] = list(points.values())
+    return pose
 
 
 def check_places(base: Base, edits: Mapping[int, Mapping[int, ArrayLike]]) -> None:
@@ -105,7 +110,7 @@ def edit_constraints(
             rays[vertex] = (float(pixel[0]), float(pixel[1]))
             depths[vertex] = float(camera.depth(pose[vertex]))
             softness[vertex] = SOFT
-    return FrameConstraints(points, rays, camera, depths, softness)
+    return FrameConstraints(points, rays, camera, depths, softness, DEPTH_PULL)
 
 
 def _solve_edit(

@@ -73,7 +73,7 @@ def propagate(
     smooth : corrections run as monotone cubics instead of linearly; default for "joint", not for "paper".
     follow : control vertex -> track that it follows (one pass suffices for it).
     end : frame at which the correction of the last edit has faded out; by default it is held to the clip's end.
-    reach : edited frame -> (in, out) frames outside which this edit changes nothing.
+    reach : edited frame -> (in, out) frames outside which this edit changes nothing, itself included.
     origin : frame from which the work spreads outward, t, t + 1, t - 1, ...; by default the first edited one.
     previous : an earlier result on the same base; spans that have not changed are taken from it, not recomputed.
     on_frame : called with each recomputed frame's vertices as they are ready.
@@ -81,13 +81,14 @@ def propagate(
     Raises
     ------
     InputError
-        An edit outside the clip or of a vertex that does not exist, a reach without its frame, an unknown track.
+        An edit outside the clip or of a vertex that does not exist, a reach outside the clip, an unknown track.
     """
     check_places(base, edits)
     report, clock = progress or silent, Clock()
     placed = {frame: {int(v): np.asarray(p, np.float64) for v, p in edits[frame].items()} for frame in sorted(edits)}
-    placed = {frame: places for frame, places in placed.items() if places}
-    spans = cut_spans(len(base), placed, _reaches(placed, reach or {}, end))
+    ranges = _reaches(placed, reach or {}, end)
+    placed = {frame: places for frame, places in placed.items() if places and _inside(frame, ranges)}
+    spans = cut_spans(len(base), placed, ranges)
     gradients = _followed(base, follow or {})
     smooth = base.method == "joint" if smooth is None else smooth
     deformer = deformer or make_deformer(base.rest, base.faces)
@@ -151,6 +152,12 @@ def _reaches(
         last = max(edits)
         ranges[last] = (ranges.get(last, (None, None))[0], end)
     return ranges
+
+
+def _inside(frame: int, ranges: Mapping[int, tuple[int | None, int | None]]) -> bool:
+    """Whether an edit lies in its own reach; one outside the range that the user set counts for nothing now."""
+    first, last = ranges.get(frame, (None, None))
+    return (first is None or first <= frame) and (last is None or frame <= last)
 
 
 def _followed(base: Base, follow: Mapping[int, str]) -> dict[int, int]:

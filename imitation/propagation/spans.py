@@ -73,8 +73,6 @@ def cut_spans(
                 raise InputError(f"The reach of the edit in frame {frame} ends in frame {end}, outside the clip.")
             if end is not None and allowed and end not in edits:
                 knots[end] = None
-        if (first is not None and first > frame) or (last is not None and last < frame):
-            raise InputError(f"The reach of the edit in frame {frame} does not contain that frame; widen it.")
     knots.update(edits)
     frames = sorted(knots)
     cut = [Knot(frame, knots[frame]) for frame in frames]
@@ -185,7 +183,7 @@ class SpanSolver:
 
 
 def _key_places(base: Base, knot: Knot) -> Array:
-    places = base.lifted[knot.frame].copy()
+    places: Array = base.lifted[knot.frame].copy()
     for key, vertex in enumerate(base.keys.vertices.tolist()):
         if knot.committed is not None and vertex in knot.committed:
             places[key] = knot.committed[vertex]
