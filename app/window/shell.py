@@ -73,6 +73,8 @@ class Shell(QMainWindow):
         self.split.addWidget(self.timeline)
         self.split.setStretchFactor(0, 1)
         self.split.setStretchFactor(1, 0)
+        self._sized = False
+        self.split.splitterMoved.connect(self._resized_by_hand)
         body = QWidget()
         body.setObjectName("body")
         inner = QVBoxLayout(body)
@@ -133,6 +135,7 @@ class Shell(QMainWindow):
         self.bar.show_work(project)
         self.show_workspace("video")
         self._autosave.start()
+        self.setFocus()
         opened.keeper.keep_up()
 
     def _attach(self) -> None:
@@ -193,6 +196,7 @@ class Shell(QMainWindow):
             self.character.blockSignals(False)
             lanes = character_lanes(project, self.character.motion.solved(project.frame_count))
         self.timeline.show_lanes(lanes, self.workspace)
+        self._fit_timeline()
         document = project.document
         clicks = sum(len(track.clicks) for track in document.tracks)
         edits = sum(len(character.edits) for character in document.characters)
@@ -200,6 +204,16 @@ class Shell(QMainWindow):
         self.status.show_counts(counts)
         viewport = self.character.mesh.viewport
         self.status.device.setText(f"3D: {viewport.host.name}" if viewport is not None else "")
+
+    def _resized_by_hand(self) -> None:
+        self._sized = True
+
+    def _fit_timeline(self) -> None:
+        """Give the lanes the room they need, up to two fifths, until the user has chosen otherwise."""
+        height = self.split.height()
+        wanted = min(self.timeline.wanted_height(), 2 * height // 5)
+        if not self._sized and height > 0 and abs(self.split.sizes()[1] - wanted) > 1:
+            self.split.setSizes([height - wanted - 8, wanted])
 
     def _show_frame(self, frame: int) -> None:
         self.timeline.show_frame(frame)

@@ -10,6 +10,7 @@ from app.window.frames import FrameLoader
 from app.window.lanes_of import CHARACTER_LEGEND, VIDEO_LEGEND
 from app.window.project import Project
 from app.window.timeline import Lane, LaneView, TimelineHit, Transport
+from app.window.timeline.lanes import total_height
 
 
 class TimelinePanel(Panel):
@@ -40,6 +41,10 @@ class TimelinePanel(Panel):
         if loader is not None:
             loader.thumbnail_ready.connect(lambda _: self.lanes.refresh())
         self.lanes.refresh()
+
+    def wanted_height(self) -> int:
+        """Pixels that transport and lanes need."""
+        return self.transport.height() + total_height(self.lanes.placed) + 4
 
     def show_lanes(self, lanes: list[Lane], workspace: str) -> None:
         """Show the lanes of a workspace."""

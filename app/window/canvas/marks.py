@@ -65,13 +65,18 @@ def cross(painter: QPainter, x: float, y: float, colour: QColor, radius: float =
         painter.drawLine(QPointF(x - radius, y + radius), QPointF(x + radius, y - radius))
 
 
+def plate_size(text: str, size: int = fonts.CAPTION) -> tuple[float, float]:
+    """Width and height of a plate with a text."""
+    metrics = QFontMetricsF(fonts.font(size, QFont.Weight.Medium))
+    return metrics.horizontalAdvance(text) + 12, metrics.height() + 4
+
+
 def plate(
     painter: QPainter, x: float, y: float, text: str, colour: QColor, *, size: int = fonts.CAPTION, align: str = "left"
 ) -> QRectF:
     """A short text on a dark plate; (x, y) is the middle of its left or right end, or of its centre."""
     face = fonts.font(size, QFont.Weight.Medium)
-    metrics = QFontMetricsF(face)
-    width, height = metrics.horizontalAdvance(text) + 12, metrics.height() + 4
+    width, height = plate_size(text, size)
     left = x if align == "left" else x - width if align == "right" else x - width / 2
     box = QRectF(round(left), round(y - height / 2), width, height)
     painter.setPen(Qt.PenStyle.NoPen)

@@ -63,7 +63,7 @@ class TrackLayer:
     hovered: str = ""
 
     def paint(self, painter: QPainter, view: View, size: tuple[int, int]) -> None:
-        """Draw paths first, then points, then names, the selected track last."""
+        """Draw paths first, then points, then names where there is room, those of the selected track first."""
         order = sorted(self.tracks, key=lambda track: track.selected)
         if self.paths:
             for track in order:
@@ -110,14 +110,14 @@ class TrackLayer:
             return
         side = "right" if x > size[0] - 90 else "left"
         shift = -14 if side == "right" else 14
-        rise = 0.0
         colour = theme.active().colour(track.colour)
-        width = 8.0 * len(track.title) + 12
-        for rise in (-14.0, 14.0, -32.0, 32.0):
-            box = QRectF(x + shift - (width if side == "right" else 0), y + rise - 9, width, 18)
-            if not any(box.intersects(other) for other in taken):
-                break
-        taken.append(marks.plate(painter, x + shift, y + rise, track.title, colour, align=side))
+        width, height = marks.plate_size(track.title)
+        wanted = track.selected or track.name == self.hovered
+        for rise in (-14.0, 14.0, -34.0, 34.0):
+            box = QRectF(x + shift - (width if side == "right" else 0), y + rise - height / 2, width, height)
+            if wanted or not any(box.intersects(other) for other in taken):
+                taken.append(marks.plate(painter, x + shift, y + rise, track.title, colour, align=side))
+                return
 
 
 def _line(points: NDArray[np.float64]) -> QPainterPath:

@@ -55,6 +55,9 @@ class MeshView(Panel):
         self.ghost_button = toggle("ghosts", "Ghosts", lambda on: self._over(), key="G")
         self.points_button = toggle("grid", "Scene", self._show_scene, on=True)
         self.points_button.setToolTip("Background points, the camera's path and the ground")
+        for each in (self.ghost_button, self.points_button):
+            each.setAccessibleName(each.text())
+            each.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
         for widget in (self.ghost_button, self.points_button, self.opacity):
             bar.addWidget(widget)
         bar.addWidget(icon_button("fit", "Show everything", self.fit, "F"))

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QWidget
 
-LABEL_WIDTH = 92
+LABEL_WIDTH = 84
 
 
 def label(text: str, role: str = "label") -> QLabel:
@@ -84,7 +84,8 @@ class Header(QWidget):
         self.row = QHBoxLayout(self)
         self.row.setContentsMargins(12, 0, 8, 0)
         self.row.setSpacing(8)
-        self.title = label(title, "title")
+        self.title = Elided(title, "title")
+        self.title.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self.caption = Elided(caption)
         self.row.addWidget(self.title)
         self.row.addWidget(self.caption, 1)

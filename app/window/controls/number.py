@@ -63,6 +63,8 @@ class NumberField(QLineEdit):
         self._value = limits.clamped(value)
         self._press: tuple[QPointF, float] | None = None
         self._dragging = False
+        self.setMinimumWidth(44)
+        self.setProperty("number", "true")
         self.setReadOnly(True)
         self.setCursor(Qt.CursorShape.SizeHorCursor)
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)

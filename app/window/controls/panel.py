@@ -11,7 +11,7 @@ from app.window.controls.labels import Header
 class Panel(QFrame):
     """A framed surface; what it shows is added to ``column``, errors appear under the header."""
 
-    def __init__(self, title: str = "", caption: str = "", header_height: int = 40) -> None:
+    def __init__(self, title: str = "", caption: str = "", header_height: int = 38) -> None:
         super().__init__()
         self.setObjectName("panel")
         self.column = QVBoxLayout(self)

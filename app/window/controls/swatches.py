@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.window import theme
 
-STEP, RADIUS = 22, 6
+STEP, RADIUS = 20, 6
 
 
 class Swatches(QWidget):

@@ -12,7 +12,7 @@ from app.window.lanes_of import DOUBT
 from app.window.project import Project
 from app.window.reading import KnownTrack
 
-SHOWN_SPANS = 7
+SHOWN_SPANS = 4
 
 
 class TrackInspector(ScrollColumn):
@@ -32,7 +32,7 @@ class TrackInspector(ScrollColumn):
         self.body = QWidget()
         column = QVBoxLayout(self.body)
         column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(8)
+        column.setSpacing(6)
         self.name = QLineEdit()
         self.name.setAccessibleName("Name of the point")
         self.name.editingFinished.connect(self._rename)
@@ -50,7 +50,7 @@ class TrackInspector(ScrollColumn):
         self.table = SpanTable()
         self.table.go.connect(self.go)
         column.addWidget(self.table)
-        self.suggest = button("Go to the frame that needs a click most", self._suggest, name="go")
+        self.suggest = button("Go where a click helps most", self._suggest, name="go")
         column.addWidget(self.suggest)
         column.addWidget(separator())
         column.addLayout(self._actions())
@@ -60,7 +60,7 @@ class TrackInspector(ScrollColumn):
 
     def _actions(self) -> QGridLayout:
         grid = QGridLayout()
-        grid.setSpacing(8)
+        grid.setSpacing(6)
         self.remove = button("Remove this click", lambda: self._edit(tracks.remove_click, self._frame()))
         self.end = button("End here", lambda: self._edit(tracks.end_track, self._frame()))
         self.hide_ = button("Hidden here", self._toggle_hidden)

@@ -90,7 +90,7 @@ class StepList(QWidget):
         super().__init__()
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(4)
+        self._column.setSpacing(2)
         self._rows: list[tuple[QLabel, QLabel, Elided]] = []
         self._shown: list[Step] = []
         self.button = button("Run what is missing", self.run.emit, primary=True, name="run")
@@ -106,7 +106,7 @@ class StepList(QWidget):
             row = QHBoxLayout()
             row.setSpacing(8)
             widgets = (QLabel(), label("", "value"), Elided("", "label"))
-            widgets[0].setFixedSize(18, 22)
+            widgets[0].setFixedSize(18, 20)
             widgets[1].setFixedWidth(72)
             for widget in widgets:
                 row.addWidget(widget)

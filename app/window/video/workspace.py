@@ -150,6 +150,10 @@ class VideoWorkspace(QWidget):
             edits_by_mouse.keep_old_paths(self.shown, self.reading, before, after)
         self.refresh()
 
+    def showEvent(self, event: object) -> None:
+        """Say what the mouse does when the workspace comes into sight."""
+        self.hint.emit(HINTS[self.tool])
+
     def refresh(self) -> None:
         """Show the project as it is."""
         project, reading = self.project, self.reading

@@ -22,6 +22,7 @@ class GlHost(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self.setObjectName("render host")
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         self.plotter: Any = QtInteractor(self, auto_update=False, multi_samples=0, lighting="none")
@@ -71,3 +72,4 @@ class GlHost(QWidget):
         self.scene.clear()
         plotter.render_window.Finalize()
         plotter.close()
+        self.setProperty("finished", True)

@@ -24,6 +24,7 @@ class RasterHost(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self.setObjectName("render host")
         self.plotter: Any = pv.Plotter(off_screen=True, window_size=(64, 64), lighting="none")
         self.plotter.render_window.SetAlphaBitPlanes(1)
         self.scene = Scene(self.plotter)
@@ -73,3 +74,4 @@ class RasterHost(QWidget):
         plotter.render_window.Finalize()
         plotter.close()
         plotter.deep_clean()
+        self.setProperty("finished", True)
