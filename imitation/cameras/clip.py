@@ -75,6 +75,11 @@ class Clip:
         """(width, height) of ``grey``, pixels."""
         return round(self.size[0] * self.scale), round(self.size[1] * self.scale)
 
+    @property
+    def working_centre(self) -> Array:
+        """The principal point (2,) in ``grey``, pixels."""
+        return (np.array(self.working_size, np.float64) - 1) / 2
+
     def grey(self, frame: int) -> Grey:
         """The frame as grey uint8, at most ``LONGEST`` pixels long."""
         import cv2

@@ -45,9 +45,9 @@ def heading(forward: Array) -> Array:
 
 
 def likely_world(R: Array, T: Array, points: Array) -> Similarity:
-    """Similarity to a world with likely up +Z, the first camera over the origin, a typical depth.
+    """Similarity to a world with likely up +Z, the first camera over (or, without points, at) the origin.
 
-    The first camera looks along +Y; the lower points lie about the height 0.
+    The first camera looks along +Y; the lower points lie about the height 0, the median depth is typical.
     """
     up = likely_up(R)
     level = rotation_to_z(up)
@@ -57,7 +57,7 @@ def likely_world(R: Array, T: Array, points: Array) -> Similarity:
     depth = depth[depth > 0]
     scale = TYPICAL_DEPTH / float(np.median(depth)) if len(depth) else 1.0
     moved = scale * (points - centre) @ rotation.T
-    height = -float(np.percentile(moved[:, 2], 10)) if len(points) else 1.5
+    height = -float(np.percentile(moved[:, 2], 10)) if len(points) else 0.0
     translation = -scale * rotation @ centre + np.array([0, 0, height])
     return scale, rotation, translation
 
