@@ -138,6 +138,24 @@ def lift_tracks(
     return Lift(depths * diagonal, points, cost, acceleration, stretch)
 
 
+def prepare_lift(
+    pixels: Array,
+    cameras: CameraPath,
+    rest: Array,
+    pairs: NDArray[np.int32],
+    diagonal: float,
+    known: Array,
+    prior: Array | None,
+    depths: Array,
+    settings: LiftSettings,
+) -> tuple[LiftProblem, Array, Array, Array]:
+    """The energy around a solution (n, k), world units: problem, depths, accelerations and stretches in diagonals."""
+    problem = _problem(pixels, cameras, rest, pairs, diagonal, known, prior, settings)
+    scaled = depths / diagonal
+    acceleration = np.sqrt(settings.acceleration**2 + seen_acceleration(problem, scaled, settings.window))
+    return problem, scaled, acceleration, _estimate_stretch(problem, scaled, settings)
+
+
 def starting_depths(known: Array) -> Array:
     """Depths (n, k) of frame 0, moved by the mean change of the known ones, interpolated in time."""
     frames = np.arange(len(known))

@@ -144,10 +144,8 @@ def _solve_joint(
     progress: Progress,
 ) -> tuple[Array, Array]:
     """Lift, deform once on rays and feet for a weak depth prior, lift again, polish."""
-    from imitation.geometry import key_adjacency
-
     size = diagonal(vertices)
-    pairs = np.asarray(key_adjacency(vertices, faces, keys.vertices), np.int32).reshape(-1, 2)
+    pairs = key_pairs(vertices, faces, keys)
     anchors = np.where(keys.planted, depths_of(cameras, keys.places), np.nan)
     first = lift_tracks(keys.pixels, cameras, keys.start, pairs, size, anchors=anchors, settings=settings)
     clock.lap("lifting")
@@ -216,6 +214,13 @@ def _deform_on_rays(
         given = {int(keys.vertices[key]): float(softness[frame, key]) for key in range(len(keys))}
         frames.append(FrameConstraints(points=points, rays=rays, camera=cameras[frame], depths={}, softness=given))
     return deformer.solve_sequence(frames, start=rest, progress=progress)
+
+
+def key_pairs(vertices: Array, faces: NDArray[np.int32], keys: KeyTracks) -> NDArray[np.int32]:
+    """Pairs (p, 2) of key points whose geodesic regions on the character touch: their distance is roughly kept."""
+    from imitation.geometry import key_adjacency
+
+    return np.asarray(key_adjacency(vertices, faces, keys.vertices.tolist()), np.int32).reshape(-1, 2)
 
 
 def key_softness(keys: KeyTracks) -> Array:
