@@ -1,5 +1,6 @@
 """Files from and for the outside: video, images, masks, meshes, sequences, cameras, tracks."""
 
+from app.formats.cameras import read_cameras, write_cameras
 from app.formats.images import ImageFrames, open_images, read_image, write_image
 from app.formats.masks import read_mask, read_masks, write_mask
 from app.formats.meshes import read_mesh, write_mesh
@@ -21,12 +22,14 @@ __all__ = [
     "VideoFrames",
     "open_images",
     "open_video",
+    "read_cameras",
     "read_image",
     "read_mask",
     "read_masks",
     "read_mesh",
     "read_sequence",
     "read_tracks",
+    "write_cameras",
     "write_image",
     "write_mask",
     "write_mesh",

@@ -75,6 +75,12 @@ class VtkRenderer:
 
     def draw(self, vertices: np.ndarray, camera: Camera, near: float = 0.1, far: float = 100.0) -> np.ndarray:
         """RGBA (h, w, 4), averaged over the samples."""
+        s = self.samples
+        image = self.read(vertices, camera, near, far).reshape(self.size[1], s, self.size[0], s, 4)
+        return image[::-1, ::-1].mean(axis=(1, 3))
+
+    def read(self, vertices: np.ndarray, camera: Camera, near: float = 0.1, far: float = 100.0) -> np.ndarray:
+        """RGBA of every sample, from the bottom row up, as VTK reads it back."""
         from vtkmodules.util.numpy_support import vtk_to_numpy
         from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
         from vtkmodules.vtkCommonMath import vtkMatrix4x4
@@ -103,8 +109,7 @@ class VtkRenderer:
         buffer = vtkUnsignedCharArray()
         s = self.samples
         self.window.GetRGBACharPixelData(0, 0, width * s - 1, height * s - 1, 0, buffer)
-        image = vtk_to_numpy(buffer).reshape(height, s, width, s, 4)[::-1, ::-1]
-        return image.mean(axis=(1, 3))
+        return vtk_to_numpy(buffer)
 
     def close(self) -> None:
         """Free the window."""
