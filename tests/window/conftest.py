@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import hypothesis
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt, QTimer, qInstallMessageHandler
 from PySide6.QtTest import QTest
@@ -19,6 +20,8 @@ from app.window.application import make_application
 from app.window.shell import Shell
 from tests.window.small_project import build_small_project
 
+hypothesis.settings.register_profile("window", deadline=None)
+hypothesis.settings.load_profile("window")
 HARMLESS = ("propagateSizeHints",)
 
 

@@ -59,10 +59,10 @@ def around(points: ArrayLike, orbit: Orbit | None = None, *, aspect: float = 1.4
         return before
     low, high = places.min(0), places.max(0)
     radius = max(float(np.linalg.norm(high - low)) / 2, 1e-3)
-    spread = math.tan(before.field / 2) * min(1.0, aspect)
+    spread = math.sin(math.atan(math.tan(before.field / 2) * min(1.0, aspect)))
     middle = (low + high) / 2
     target = (float(middle[0]), float(middle[1]), float(middle[2]))
-    return replace(before, target=target, distance=1.05 * radius / spread)
+    return replace(before, target=target, distance=1.02 * radius / spread)
 
 
 def beside(camera: Camera, target: ArrayLike, orbit: Orbit) -> Orbit:

@@ -1,0 +1,209 @@
+"""The 3D view on the screen, with its off-screen host, driven by a real mouse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QImage
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from app.window.viewport import Handle, VertexChosen, VertexMoved, VertexMoving, Viewport
+from app.window.viewport.orbit import Orbit
+from imitation.geometry import Camera
+from tests.window.conftest import at, drag, settle, wait_for
+
+
+@pytest.fixture
+def ball() -> tuple[np.ndarray, np.ndarray]:
+    """A ball of 642 vertices round (0, 0, 1)."""
+    import trimesh
+
+    mesh = trimesh.creation.icosphere(subdivisions=3)
+    return np.add(mesh.vertices, (0, 0, 1)), np.asarray(mesh.faces, np.int32)
+
+
+@pytest.fixture
+def view(qapp: QApplication, ball: tuple[np.ndarray, np.ndarray]) -> Iterator[Viewport]:
+    """A viewport that shows the ball."""
+    view = Viewport("raster")
+    view.resize(600, 450)
+    view.show()
+    view.show_mesh(*ball, None)
+    view.fit()
+    settle()
+    yield view
+    view.close()
+    view.deleteLater()
+
+
+def front_vertex(view: Viewport) -> int:
+    """A vertex that looks at the camera, a little off the middle."""
+    camera = view.lens().camera
+    pixels = camera.project(view.vertices)
+    away = np.hypot(*(pixels - (330, 200)).T) + 1e3 * (
+        camera.depth(view.vertices) > camera.depth(np.array([0, 0, 1.0]))
+    )
+    return int(np.argmin(away))
+
+
+def test_the_mesh_is_seen_in_the_middle(view: Viewport) -> None:
+    """The ball is lit clay in the middle, the ground's gradient in the corner."""
+    image = view.grab().toImage()
+    assert image.pixelColor(300, 225).lightness() > 100
+    assert image.pixelColor(5, 5).lightness() < 70
+
+
+def test_click_chooses_the_vertex_under_the_mouse(view: Viewport) -> None:
+    """The chosen vertex is the one whose projection was clicked."""
+    events: list[object] = []
+    view.happened.connect(events.append)
+    vertex = front_vertex(view)
+    x, y = view.lens().to_widget(view.vertices[vertex])
+    QTest.mouseClick(view, Qt.MouseButton.LeftButton, pos=at(x, y))
+    assert events == [VertexChosen(vertex)]
+
+
+def test_drag_reports_live_and_at_the_end(view: Viewport) -> None:
+    """The place reported at the end projects to where the mouse was let go."""
+    events: list[object] = []
+    view.happened.connect(events.append)
+    vertex = front_vertex(view)
+    x, y = view.lens().to_widget(view.vertices[vertex])
+    drag(view, (x, y), (x + 60, y - 30))
+    assert isinstance(events[0], VertexMoving)
+    assert isinstance(events[-1], VertexMoved)
+    end = view.lens().to_widget(np.array(events[-1].place))
+    assert np.hypot(*(end - (x + 60, y - 30))) < 1.5
+
+
+def test_moving_the_mesh_changes_the_picture(view: Viewport) -> None:
+    """An update in place is drawn at the next paint, without a new actor."""
+    actors = view.host.plotter.renderer.GetActors().GetNumberOfItems()
+    before = view.grab().toImage()
+    view.move_mesh(np.add(view.vertices, (0.3, 0.0, 0.0)))
+    settle()
+    assert view.grab().toImage() != before
+    assert view.host.plotter.renderer.GetActors().GetNumberOfItems() == actors
+
+
+def test_many_changes_are_drawn_once(view: Viewport) -> None:
+    """Ten updates between two paints cost one render."""
+    settle(400)
+    before = view.host.renders
+    for step in range(10):
+        view.move_mesh(view.vertices + 0.001 * step)
+    QApplication.processEvents()
+    assert view.host.renders - before == 1
+
+
+def test_edges_are_smooth_at_rest(view: Viewport) -> None:
+    """A quarter of a second after the last change the picture is drawn once more, finer."""
+    view.move_mesh(view.vertices)
+    QApplication.processEvents()
+    coarse, count = view.grab().toImage(), view.host.renders
+    wait_for(lambda: view.host.renders > count, 3)
+    settle()
+    assert view.host._size[0] == 2 * coarse.width()
+    count = view.host.renders
+    settle(400)
+    assert view.host.renders == count, "nothing may be drawn while nothing changes"
+
+
+def test_empty_space_turns_and_the_wheel_goes_closer(view: Viewport) -> None:
+    """A drag beside the mesh turns the orbit; Shift moves the target."""
+    before = view.orbit
+    drag(view, (20, 20), (80, 20))
+    assert view.orbit.azimuth != before.azimuth
+    turned = view.orbit
+    drag(view, (20, 20), (60, 20), keys=Qt.KeyboardModifier.ShiftModifier)
+    assert view.orbit.target != turned.target
+    assert view.orbit.azimuth == turned.azimuth
+
+
+def test_handles_are_picked_first_and_drawn(view: Viewport) -> None:
+    """A handle in front of nothing is found at its place, and its colour is there."""
+    place = tuple(float(each) for each in view.vertices[front_vertex(view)])
+    view.show_handles([Handle(3, "paw", place, "edited")])
+    settle()
+    x, y = view.lens().to_widget(np.array(place))
+    assert view.vertex_at((float(x) + 4, float(y))) == 3
+    assert view.grab().toImage().pixelColor(int(x), int(y)).red() > 200
+
+
+def test_escape_puts_a_drag_back(view: Viewport) -> None:
+    """After Escape the release decides nothing."""
+    events: list[object] = []
+    view.happened.connect(events.append)
+    x, y = view.lens().to_widget(view.vertices[front_vertex(view)])
+    drag(view, (x, y), (x + 60, y), release=False)
+    assert view.cancel()
+    QTest.mouseRelease(view, Qt.MouseButton.LeftButton, pos=at(x + 60, y))
+    assert not any(isinstance(event, VertexMoved) for event in events)
+
+
+def test_mesh_lies_on_the_video_through_the_recovered_camera(view: Viewport) -> None:
+    """Small balls drawn through an odd camera are centred on K[R|T]X to a few hundredths of a pixel."""
+    import trimesh
+
+    base = Orbit((0, 0, 1), 4.5, 0.5, 0.25).camera((600, 450))
+    camera = Camera([[700.0, 0, 333.0], [0, 660.0, 190.0], [0, 0, 1]], base.R, base.T)
+    centres = np.array([[0.4, 0.2, 1.1], [-0.5, 0.1, 0.8], [0.1, -0.4, 1.4], [0.0, 0.3, 0.6]])
+    picture = QImage(600, 450, QImage.Format.Format_RGB32)
+    picture.fill(QColor(0, 0, 0))
+    small = trimesh.creation.icosphere(subdivisions=3, radius=0.03)
+    worst = 0.0
+    for centre in centres:
+        view.show_mesh(np.asarray(small.vertices) + centre, np.asarray(small.faces, np.int32), None)
+        view.show_camera(camera, picture)
+        view.look("camera")
+        settle()
+        view._draw(fine=True)
+        rows = view.host._rows[..., 3].astype(float)
+        scale = rows.shape[1] / 600
+        ys, xs = np.mgrid[: rows.shape[0], : rows.shape[1]]
+        seen = np.array([(rows * xs).sum(), (rows * ys).sum()]) / rows.sum()
+        seen = (seen + 0.5) / scale
+        # The centre of a ball's outline is not the projection of its centre: compare with its vertices' hull.
+        outline = camera.project(np.asarray(small.vertices) + centre) + 0.5
+        from scipy.spatial import ConvexHull
+
+        ring = outline[ConvexHull(outline).vertices]
+        following = np.roll(ring, -1, axis=0)
+        cross = ring[:, 0] * following[:, 1] - following[:, 0] * ring[:, 1]
+        expected = ((ring + following) * cross[:, None]).sum(0) / (3 * cross.sum())
+        worst = max(worst, float(np.hypot(*(seen - expected))))
+    assert worst < 0.05, worst
+
+
+def test_closing_twice_and_drawing_after_the_end_do_no_harm(
+    qapp: QApplication, ball: tuple[np.ndarray, np.ndarray]
+) -> None:
+    """Finishing is idempotent; a finished view ignores what comes late."""
+    view = Viewport("raster")
+    view.resize(300, 200)
+    view.show()
+    view.show_mesh(*ball, None)
+    settle()
+    view.finish()
+    view.finish()
+    view.host.draw(view.lens(), fine=False)
+    view.close()
+    view.deleteLater()
+
+
+def test_many_views_one_after_the_other(qapp: QApplication, ball: tuple[np.ndarray, np.ndarray]) -> None:
+    """Ten views opened and closed: all work, none stays."""
+    for _ in range(10):
+        view = Viewport("raster")
+        view.resize(200, 150)
+        view.show()
+        view.show_mesh(*ball, None)
+        view.fit()
+        settle(5)
+        assert view.grab().toImage().pixelColor(100, 75).lightness() > 60
+        view.close()
+        view.deleteLater()
