@@ -6,6 +6,7 @@ import re
 import threading
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,6 +70,9 @@ class ImageFrames(FrameSource):
         self._cache: ByteCache[Picture] = ByteCache(memory)
         height, width = read_image(self.paths[0]).shape[:2]
         self.size = (width, height)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return open_images, (self.path, self.fps)
 
     def close(self) -> None:
         """Let go of all decoded frames."""

@@ -50,7 +50,7 @@ class VideoFrames(FrameSource):
     """
 
     def __init__(self, path: Path, *, memory: int = MEMORY, partial: bool = False) -> None:
-        self.path = path
+        self.path, self._memory, self._partial = path, memory, partial
         self._lock = threading.RLock()
         self._decoded: ByteCache[Any] = ByteCache(memory - memory // 8)
         self._shown: ByteCache[Picture] = ByteCache(memory // 8)
@@ -73,6 +73,14 @@ class VideoFrames(FrameSource):
         except BaseException:
             self.close()
             raise
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Another process opens the file itself.
+        return VideoFrames._again, (self.path, self._memory, self._partial)
+
+    @staticmethod
+    def _again(path: Path, memory: int, partial: bool) -> VideoFrames:
+        return VideoFrames(path, memory=memory, partial=partial)
 
     def close(self) -> None:
         """Let go of the file and of all decoded frames."""

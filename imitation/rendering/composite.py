@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from imitation.errors import InputError
 from imitation.geometry.projection import Camera
 from imitation.progress import Progress, silent
-from imitation.rendering.ground import Ground, Plane, ground_shadow
+from imitation.rendering.ground import Footing, Ground, Plane, ground_shadow
 from imitation.rendering.light import Look
 from imitation.rendering.mesh import UP, Renderer, Rendering
 
@@ -112,7 +112,7 @@ def render_sequence(
             )
             if dim:
                 back = np.rint(back + dim * (np.float32(96) - back)).astype(np.uint8)
-            floor = ground if ground is None or isinstance(ground, Plane | np.ndarray) else ground[t]
+            floor = ground if ground is None or isinstance(ground, Plane | Footing | np.ndarray) else ground[t]
             yield over_frame(
                 renderer, pose, camera, back, floor, None if background is None else background[t],
                 None if tracks is None else [track[t] for track in tracks.values()],

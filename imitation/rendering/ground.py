@@ -18,6 +18,13 @@ def _vector(value: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
+def _rows(value: ArrayLike) -> NDArray[np.float64]:
+    array = np.array(value, np.float64).reshape(-1, 3)
+    if not np.isfinite(array).all():
+        raise InputError("Ground near the feet needs points of three finite numbers.")
+    return array
+
+
 @attrs.frozen(eq=False)
 class Plane:
     """Flat ground.
@@ -32,16 +39,34 @@ class Plane:
     normal: NDArray[np.float64] = attrs.field(converter=_vector, default=(0.0, 0.0, 1.0))
 
 
+@attrs.frozen(eq=False)
+class Footing:
+    """Ground known only near the feet, such as the steps of a stair: level round each point.
+
+    Attributes
+    ----------
+    points : (k, 3) where the ground is, world; the contacts of this frame.
+    normal : (3,) pointing up.
+    reach : how far the ground is taken to be level round a point, world units; None: a third of the character.
+    """
+
+    points: NDArray[np.float64] = attrs.field(converter=_rows)
+    normal: NDArray[np.float64] = attrs.field(converter=_vector, default=(0.0, 0.0, 1.0))
+    reach: float | None = None
+
+
 _STEP = 2
 """Pixels from one computed sample of a shadow to the next."""
 
-Ground = Plane | NDArray[np.floating]
-"""Flat ground, or the background's depth (h, w), camera z, NaN where unknown."""
+Ground = Plane | Footing | NDArray[np.floating]
+"""Flat ground, ground near the feet, or the background's depth (h, w), camera z, NaN where unknown."""
+
+Lights = tuple[LightMap, LightMap]
 
 
 def ground_shadow(
     vertices: NDArray[np.float64],
-    lights: tuple[LightMap, LightMap],
+    lights: Lights,
     camera: Camera,
     size: tuple[int, int],
     ground: Ground,
@@ -56,17 +81,43 @@ def ground_shadow(
     lights : what the key light and the sky see of it.
     ground : see Ground.
     """
+    if not isinstance(ground, Footing):
+        box = _box(_reached(vertices, lights[0], ground), 0.15 * lights[0].radius, camera, size)
+        return _patch(vertices, lights, camera, size, ground, look, box)
+    open_share = np.ones((size[1], size[0]), np.float32)
+    reach = ground.reach or 0.33 * lights[0].radius
+    for point in ground.points:
+        plane = Plane(point, ground.normal)
+        box = _box(point[None], 1.6 * reach, camera, size)
+        shade = _patch(vertices, lights, camera, size, plane, look, box, reach)
+        # Where the levels of two feet meet, the darker counts: each shades its own step.
+        open_share = np.minimum(open_share, 1 - shade)
+    shades: NDArray[np.float32] = 1 - open_share
+    return shades
+
+
+Box = tuple[int, int, int, int]
+
+
+def _patch(
+    vertices: NDArray[np.float64],
+    lights: Lights,
+    camera: Camera,
+    size: tuple[int, int],
+    ground: Plane | NDArray[np.floating],
+    look: Look,
+    box: Box | None,
+    reach: float | None = None,
+) -> NDArray[np.float32]:
+    """The shadow inside a box of pixels; with ``reach`` it fades out round the plane's point."""
     import cv2
 
     shade = np.zeros((size[1], size[0]), np.float32)
-    key, sky = lights
-    box = _box(vertices, key, camera, size, ground, up)
     if box is None:
         return shade
     left, top, right, bottom = box
     columns, rows = np.meshgrid(np.arange(left, right, _STEP), np.arange(top, bottom, _STEP))
-    pixels = np.stack([columns.reshape(-1), rows.reshape(-1)], axis=1)
-    rays = camera.rays(pixels)
+    rays = camera.rays(np.stack([columns.reshape(-1), rows.reshape(-1)], axis=1))
     with np.errstate(divide="ignore", invalid="ignore"):
         if isinstance(ground, Plane):
             z = ((ground.point - camera.centre) @ ground.normal) / (rays @ ground.normal)
@@ -74,15 +125,15 @@ def ground_shadow(
             z = np.asarray(ground, np.float64)[top:bottom:_STEP, left:right:_STEP].reshape(-1)
         there = np.isfinite(z) & (z > 0)
     points = camera.centre + z[there, None] * rays[there]
-    radius = key.radius
-    cast = blocked(points, key, surface=False, least=0.02 * radius, spread=0.10, fade=2.2 * radius, count=20)
-    contact = blocked(points, sky, surface=False, least=0.07 * radius, fade=0.16 * radius, count=28)
-    dark = 1 - (1 - look.shadow * cast) * (1 - look.contact * np.minimum(1.0, 1.25 * contact))
+    dark = _darkness(points, lights, look)
+    if reach is not None and isinstance(ground, Plane):
+        away = np.linalg.norm(points - ground.point, axis=1) / reach
+        dark = dark * np.clip(1.6 - away, 0, 1) ** 2
     patch = np.zeros(rows.shape, np.float32)
-    patch.reshape(-1)[there] = dark
+    patch.reshape(-1)[there] = np.minimum(dark, 1.0)
     middle = float(camera.depth((vertices.min(axis=0) + vertices.max(axis=0)) / 2))
-    blur = 0.012 * radius * float(camera.K[0, 0]) / max(middle, 1e-9) / _STEP
-    patch = cv2.GaussianBlur(patch, (0, 0), float(np.clip(blur, 0.6, 8.0)), borderType=cv2.BORDER_REPLICATE)
+    blur = 0.012 * lights[0].radius * float(camera.K[0, 0]) / max(middle, 1e-9) / _STEP
+    patch = np.asarray(cv2.GaussianBlur(patch, (0, 0), float(np.clip(blur, 0.6, 8.0)), borderType=cv2.BORDER_REPLICATE))
     # Sample (0, 0) of the coarse patch lies on the pixel (left, top).
     place = np.array([[1 / _STEP, 0, 0], [0, 1 / _STEP, 0]], np.float64)
     flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
@@ -92,26 +143,29 @@ def ground_shadow(
     return shade
 
 
-def _box(
-    vertices: NDArray[np.float64],
-    key: LightMap,
-    camera: Camera,
-    size: tuple[int, int],
-    ground: Ground,
-    up: NDArray[np.float64],
-) -> tuple[int, int, int, int] | None:
-    """Pixels that a shadow may reach: round the character and round its projections on the ground."""
+def _darkness(points: NDArray[np.float64], lights: Lights, look: Look) -> NDArray[np.float64]:
+    key, sky = lights
+    radius = key.radius
+    cast = blocked(points, key, surface=False, least=0.02 * radius, spread=0.10, fade=2.2 * radius, count=20)
+    contact = blocked(points, sky, surface=False, least=0.07 * radius, fade=0.16 * radius, count=28)
+    dark: NDArray[np.float64] = 1 - (1 - look.shadow * cast) * (1 - look.contact * np.minimum(1.0, 1.25 * contact))
+    return dark
+
+
+def _reached(vertices: NDArray[np.float64], key: LightMap, ground: Plane | NDArray[np.floating]) -> NDArray[np.float64]:
+    """World points round which a shadow may lie: the character and where it falls."""
     direction = -key.camera.R[2]
     if isinstance(ground, Plane):
         slope = max(float(direction @ ground.normal), 0.1)
         fall = ((vertices - ground.point) @ ground.normal)[:, None]
-        reach = np.concatenate([vertices - fall * direction / slope, vertices - fall * ground.normal])
-    else:
-        reach = np.concatenate([vertices, vertices - direction * 2 * key.radius])
-    margin = 0.15 * key.radius
-    across = np.stack([camera.R[0], camera.R[1], camera.R[2]]) * margin
-    cloud = np.concatenate([reach + shift for shift in (*across, *-across)])
-    pixels = camera.project(cloud)
+        return np.concatenate([vertices - fall * direction / slope, vertices - fall * ground.normal])
+    return np.concatenate([vertices, vertices - direction * 2 * key.radius])
+
+
+def _box(points: NDArray[np.float64], margin: float, camera: Camera, size: tuple[int, int]) -> Box | None:
+    """Pixels within ``margin`` world units of points."""
+    shifts = camera.R * margin
+    pixels = camera.project(np.concatenate([points + shift for shift in (*shifts, *-shifts)]))
     pixels = pixels[np.isfinite(pixels).all(axis=1)]
     if not len(pixels):
         return None

@@ -33,9 +33,9 @@ class Look:
     """
 
     key: tuple[float, float, float] | None = None
-    key_light: tuple[float, float, float] = (1.55, 1.47, 1.35)
+    key_light: tuple[float, float, float] = (1.42, 1.34, 1.23)
     fill_light: tuple[float, float, float] = (0.16, 0.19, 0.24)
-    sky: tuple[float, float, float] = (0.44, 0.48, 0.55)
+    sky: tuple[float, float, float] = (0.38, 0.42, 0.49)
     bounce: tuple[float, float, float] = (0.20, 0.18, 0.15)
     base: tuple[float, float, float] = (0.72, 0.67, 0.62)
     gloss: float = 0.10
@@ -132,18 +132,19 @@ def blocked(
     count : samples a point.
     """
     local = np.ascontiguousarray(points @ light.camera.R.T + light.camera.T)
-    depths = light.nearest if surface else light.farthest
+    # Ground is in shadow below anything, even below a foot that sinks into it; the gap is to the lowest surface.
+    lowest = light.nearest if surface else light.farthest
     focal, middle = float(light.camera.K[0, 0]), float(light.camera.K[0, 2])
     shares: NDArray[np.float64] = _blocked(
-        local, depths, focal, middle, disc(count), least / light.pixel, spread / light.pixel, fade, bias
+        local, light.nearest, lowest, focal, middle, disc(count), least / light.pixel, spread / light.pixel, fade, bias
     )
     return shares
 
 
 @njit(cache=True, nogil=True)
 def _blocked(
-    local: Any, depths: Any, focal: float, middle: float, pattern: Any, least: float, spread: float, fade: float,
-    bias: float,
+    local: Any, depths: Any, lowest: Any, focal: float, middle: float, pattern: Any, least: float, spread: float,
+    fade: float, bias: float,
 ) -> Any:  # fmt: skip
     size = depths.shape[0]
     shares = np.zeros(local.shape[0])
@@ -156,10 +157,11 @@ def _blocked(
             reach = least + spread * 0.6 * size * z / focal
             for k in range(pattern.shape[0]):
                 x, y = round(u + reach * pattern[k, 0]), round(v + reach * pattern[k, 1])
-                if 0 <= x < size and 0 <= y < size and abs(depths[y, x]) < np.inf and depths[y, x] < z - bias:
+                if 0 <= x < size and 0 <= y < size and depths[y, x] < z - bias:
                     # What is near casts the sharper shadow, so it counts more.
-                    weight = 1.0 / (z - depths[y, x] + 0.02 * size * z / focal)
-                    gap += weight * (z - depths[y, x])
+                    apart = max(z - lowest[y, x], 0.0)
+                    weight = 1.0 / (apart + 0.02 * size * z / focal)
+                    gap += weight * apart
                     found += weight
             if found == 0:
                 continue
@@ -167,7 +169,7 @@ def _blocked(
         total = 0.0
         for k in range(pattern.shape[0]):
             x, y = round(u + radius * pattern[k, 0]), round(v + radius * pattern[k, 1])
-            if 0 <= x < size and 0 <= y < size and abs(depths[y, x]) < np.inf and depths[y, x] < z - bias:
-                total += np.exp(-(z - depths[y, x]) / fade)
+            if 0 <= x < size and 0 <= y < size and depths[y, x] < z - bias:
+                total += np.exp(-max(z - lowest[y, x], 0.0) / fade)
         shares[n] = total / pattern.shape[0]
     return shares

@@ -14,7 +14,7 @@ from imitation.errors import InputError
 from imitation.geometry.projection import Camera
 from imitation.progress import Progress, silent
 from imitation.rendering.composite import Picture, over_frame, studio
-from imitation.rendering.ground import Plane
+from imitation.rendering.ground import Ground, Plane
 from imitation.rendering.light import Look, look_at
 from imitation.rendering.mesh import UP, Renderer
 
@@ -83,6 +83,7 @@ def side_view(
     size: tuple[int, int],
     *,
     ground: Plane | None = None,
+    footing: Sequence[Ground] | None = None,
     points: ArrayLike | None = None,
     colors: ArrayLike | None = None,
     look: Look | None = None,
@@ -98,6 +99,7 @@ def side_view(
     vertices, faces, cameras, colors, look, samples, up : see render_sequence.
     size : (width, height) of the pictures.
     ground : the plane of the grid; where it is not given, level with the lowest vertex of all frames.
+    footing : what receives the shadow in each frame, where that is not the plane of the grid (stairs).
     points : (p, 3) background points to show, world.
     turn : how far the view is turned about ``up``, radians.
     """
@@ -117,7 +119,7 @@ def side_view(
             back = grid(studio(size), view, ground, step=_nice(reach / 4), reach=3.0 * reach, centre=pose.mean(axis=0))
             if cloud is not None:
                 back = _dots(back, view, cloud)
-            yield over_frame(renderer, pose, view, back, ground)
+            yield over_frame(renderer, pose, view, back, ground if footing is None else footing[t])
             report((t + 1) / len(views))
 
 

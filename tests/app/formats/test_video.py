@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import threading
 from fractions import Fraction
 from pathlib import Path
@@ -109,6 +110,23 @@ def test_pictures_are_read_only_and_views_are_lazy(clips: Path) -> None:
         assert number_of(view[-1]) == 19
         with pytest.raises(IndexError):
             video[200]
+
+
+def test_sources_travel_to_other_processes(clips: Path, tmp_path: Path) -> None:
+    """A pickled source opens the same medium again."""
+    write_image(tmp_path / "1.png", numbered(1))
+    for source in (open_video(clips / "gop12.mp4"), open_images(tmp_path, fps=30)):
+        with source, pickle.loads(pickle.dumps(source)) as again:
+            assert (again.fingerprint, again.fps, len(again)) == (source.fingerprint, source.fps, len(source))
+            np.testing.assert_array_equal(again[-1], source[-1])
+
+
+def test_a_closed_video_says_so(clips: Path) -> None:
+    """Frames of a closed video cannot be read."""
+    with open_video(clips / "gop12.mp4") as video:
+        pass
+    with pytest.raises(InputError, match="is closed"):
+        video[3]
 
 
 def test_threads_share_one_video(clips: Path) -> None:

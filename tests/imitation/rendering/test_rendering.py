@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from imitation.errors import Cancelled, InputError
 from imitation.geometry.projection import Camera
 from imitation.rendering import (
+    Footing,
     Layer,
     Plane,
     Renderer,
@@ -184,6 +185,26 @@ def test_shadow_on_a_depth_map_equals_shadow_on_its_plane() -> None:
     assert on_plane.max() > 0.4
     assert np.abs(on_plane - on_depth).max() < 0.15
     assert np.abs(on_plane - on_depth).mean() < 0.01
+
+
+def test_each_foot_shades_its_own_step() -> None:
+    """Ground known near two feet of different height darkens under each, as its own plane would, and not far away."""
+    camera = off_centre_camera(0)
+    feet = np.array([[0.4, 0.0, 0.0], [-0.4, 0.0, 0.5]])
+    parts = [ball(foot + np.array([0, 0, 0.2]), 0.2) for foot in feet]
+    vertices = np.concatenate([part[0] for part in parts])
+    faces = np.concatenate([parts[0][1], parts[1][1] + len(parts[0][0])])
+    with Renderer(faces, SIZE) as renderer:
+        lights = renderer.lights(vertices, camera)
+        more = (camera, SIZE, Footing(feet), renderer.look, renderer.up)
+        shade = ground_shadow(vertices, lights, *more)
+    for foot in feet:
+        x, y = np.rint(camera.project(foot)).astype(int)
+        assert shade[y, x] > 0.4
+    x, y = np.rint(camera.project(np.array([0.0, -1.2, 0.0]))).astype(int)
+    assert shade[y, x] < 0.02
+    with pytest.raises(InputError, match="near the feet"):
+        Footing([[0, np.nan, 0]])
 
 
 def test_the_background_hides_what_is_behind_it() -> None:
