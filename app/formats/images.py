@@ -72,7 +72,7 @@ class ImageFrames(FrameSource):
         self.size = (width, height)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return open_images, (self.path, self.fps)
+        return _again, (self.path, self.fps, self._cache.budget)
 
     def close(self) -> None:
         """Let go of all decoded frames."""
@@ -93,6 +93,10 @@ class ImageFrames(FrameSource):
                 picture.setflags(write=False)
                 self._cache.put(frame, picture, picture.nbytes)
             return picture
+
+
+def _again(folder: Path, fps: Fraction, memory: int) -> ImageFrames:
+    return ImageFrames(folder, fps=fps, memory=memory)
 
 
 def read_image(path: str | Path) -> Picture:
