@@ -47,13 +47,20 @@ class Body:
 
 
 def key_vertices(skeleton: Skeleton, vertices: Array) -> dict[str, int]:
-    """The vertex nearest to each key point's place in the rest pose."""
-    return {name: int(np.argmin(np.sum((vertices - place) ** 2, axis=1))) for name, place in skeleton.keys.items()}
+    """The vertex nearest to each key point's place in the rest pose; for soles, of those that touch the ground."""
+    soles = {name for leg in skeleton.legs for name, _ in leg.soles}
+    lifted = vertices[:, 2] > 1e-3
+    found = {}
+    for name, place in skeleton.keys.items():
+        off = np.sum((vertices - place) ** 2, axis=1)
+        found[name] = int(np.argmin(np.where(lifted, np.inf, off) if name in soles else off))
+    return found
 
 
 def body_of(skeleton: Skeleton, vertices: int) -> Body:
     """Skin a skeleton with about ``vertices`` vertices."""
     points, faces = body_mesh(skeleton, vertices)
+    points = points.astype(np.float32).astype(np.float64)  # so that files hold the same bits
     return Body(skeleton, points, faces, skin_weights(points, faces, skeleton), key_vertices(skeleton, points))
 
 

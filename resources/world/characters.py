@@ -22,10 +22,10 @@ def fox_skeleton() -> Skeleton:
     body.flesh = [f for f in body.flesh if f.bone not in ears | tails and f is not snout]
     body.cover("head", head + _h(0.1, 0, -0.025), head + _h(0.21, 0, -0.06), 0.07, 0.032)
     for side, s in (("left", 1), ("right", -1)):
-        body.cover(f"{side} ear", head + _h(-0.005, s * 0.055, 0.05), head + _h(-0.02, s * 0.075, 0.11), 0.056, 0.045)
-        body.cover(f"{side} ear", head + _h(-0.02, s * 0.075, 0.11), head + _h(-0.045, s * 0.1, 0.21), 0.045, 0.012)
+        for foot in (_h(0.015, s * 0.035, 0.05), _h(-0.005, s * 0.085, 0.03)):
+            body.cover(f"{side} ear", head + foot, head + _h(-0.04, s * 0.098, 0.165), 0.048, 0.013)
         body.cover("head", head + _h(0.0, 0, -0.02), head + _h(0.015, s * 0.075, -0.05), 0.07, 0.035)
-        body.extras[f"{side} ear"] = head + _h(-0.045, s * 0.11, 0.225)
+        body.extras[f"{side} ear"] = head + _h(-0.04, s * 0.105, 0.178)
     tail = [body.bones[f"tail {i}"].head for i in (1, 2, 3)]
     tip = tail[2] + np.array([-0.26, 0, 0.15])
     for i, (a, b, r0, r1) in enumerate(

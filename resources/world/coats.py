@@ -65,7 +65,9 @@ def fox_fur(x, y, z, fp):  # type: ignore[no-untyped-def]
     cheek = step(0.62, 0.68, x) * (1 - step(0.8, 0.815, z + 0.4 * edge))
     colour = _mix(colour, cream, cheek)
     colour = _mix(colour, cream, 1 - step(-0.74, -0.68, x + edge))
-    colour = _mix(colour, sock, step(1.02, 1.05, z + 0.5 * edge) * (x > 0.4))
+    colour = _mix(colour, sock, step(0.95, 0.98, z + 0.4 * edge) * (x > 0.4))
+    eye = np.sqrt((x - 0.743) ** 2 + (abs(y) - 0.078) ** 2 + (z - 0.838) ** 2)
+    colour = _mix(colour, (0.015, 0.01, 0.008), max(1 - step(0.02, 0.028, eye), step(0.882, 0.892, x)))
     k = _hair(x, y, z, fp)
     return colour[0] * k, colour[1] * k, colour[2] * k
 

@@ -64,7 +64,7 @@ class Leg:
 
 @attrs.define(eq=False)
 class Skeleton:
-    """Bones in the order parents first, legs, flesh, and in the rest pose the places of the 16 key points and of others.
+    """Bones in the order parents first, legs, flesh, and where in the rest pose the 16 key points and others are.
 
     ``extras`` are further points that are easy to see and to click on.
     """

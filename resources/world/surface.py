@@ -116,5 +116,7 @@ def skin_weights(points: Array, faces: Faces, skeleton: Skeleton, reach: float =
         lock *= np.isin(label, [foot, names.index(leg.lower)])
         weights = (1 - lock[:, None]) * weights
         weights[:, foot] += lock
+    weights = np.where(weights >= np.sort(weights, axis=1)[:, -4][:, None], weights, 0)
+    weights = (weights / weights.sum(axis=1, keepdims=True)).astype(np.float32).astype(np.float64)
     total: Array = weights / weights.sum(axis=1, keepdims=True)
     return total
