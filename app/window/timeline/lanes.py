@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from app.window.timeline.axis import LABELS, Axis
 
 RULER = 26
+LOW, TALLER = 14, 5
 Style = Literal["solid", "dim", "hatch", "outline"]
 
 
@@ -90,14 +91,17 @@ class TimelineHit:
 
 
 def layout(lanes: Sequence[Lane], scrolled: dict[str, int] | None = None) -> tuple[Placed, ...]:
-    """Stack the lanes under the ruler; a selected row is taller, so that it is easy to hit."""
+    """Stack the lanes under the ruler; a selected row is taller, so that it is easy to hit.
+
+    Its lane has room for it even while no row is selected, so that nothing moves when one is.
+    """
     placed, top = [], RULER
     for lane in lanes:
         rows, y = [], top + lane.padding
         first = (scrolled or {}).get(lane.id, 0)
         shown = lane.rows[first : first + lane.shown_rows]
         for row in shown:
-            height = lane.row_height + (5 if row.selected and lane.row_height < 14 else 0)
+            height = lane.row_height + (TALLER if row.selected and lane.row_height < LOW else 0)
             rows.append((row, y, height))
             y += height
         if lane.thumbnails:
@@ -106,9 +110,12 @@ def layout(lanes: Sequence[Lane], scrolled: dict[str, int] | None = None) -> tup
             y += 34
         elif not shown:
             y += lane.row_height
+        if shown and lane.row_height < LOW and not lane.thumbnails and not any(row.selected for row in shown):
+            y += TALLER
         bottom = max(y + lane.padding, top + 26)
         if shown and not lane.thumbnails:
-            spare = (bottom - lane.padding - y) // 2
+            last = rows[-1][1] + rows[-1][2]
+            spare = (bottom - lane.padding - last) // 2
             rows = [(row, at + spare, height) for row, at, height in rows]
         placed.append(Placed(lane, top, bottom - top, tuple(rows)))
         top = bottom
