@@ -210,7 +210,7 @@ def seen_acceleration(problem: LiftProblem, depths: Array, window: float) -> Arr
     """What the picture shows of the squared acceleration (n - 2, k), averaged over a window of frames."""
     if len(depths) < 3:
         return np.zeros((0, depths.shape[1]))
-    return windowed_acceleration(problem.points(depths), problem.directions, window)
+    return windowed_acceleration(problem.points(depths), problem.directions, window)[0]
 
 
 def _problem(

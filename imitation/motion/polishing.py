@@ -86,8 +86,8 @@ def polish(
     observed = np.ones((count, keys), bool) if observed is None else observed
     size = pixel_size(cameras, points) / diagonal
     spread = np.maximum(noise * size, 1e-5)
-    seen = windowed_acceleration(points / diagonal, directions, window)
-    acceleration = np.maximum(seen - NOISE_SHARE * spread[1:-1] ** 2, FLOOR**2)
+    seen, along = windowed_acceleration(points / diagonal, directions, window)
+    acceleration = np.maximum(seen - NOISE_SHARE * spread[1:-1] ** 2, FLOOR**2) + along
     across = np.where(observed, spread, 0.05)
     along = 2 * np.maximum(across, ALONG)
     firm = held | planted

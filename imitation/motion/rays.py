@@ -40,15 +40,19 @@ def pixel_size(cameras: CameraPath, points: Array) -> Array:
     return size
 
 
-def windowed_acceleration(points: Array, directions: Array, window: float) -> Array:
-    """Squared second difference (n - 2, k) of points (n, k, 3) across their rays, Gaussian mean over ``window`` frames.
+def windowed_acceleration(points: Array, directions: Array, window: float) -> tuple[Array, Array]:
+    """Squared second difference of points (n, k, 3) across and along their rays, Gaussian mean over ``window`` frames.
 
-    What happens across the rays is what the picture shows of a point's acceleration.
+    Returns
+    -------
+    across (n - 2, k) : what the picture shows of a point's acceleration, jitter of the track included.
+    along (n - 2, k) : what the depths make of it.
     """
     from scipy.ndimage import gaussian_filter1d
 
     ray = directions[1:-1] / np.linalg.norm(directions[1:-1], axis=-1, keepdims=True)
     change = np.diff(points, 2, axis=0)
-    across = change - (change * ray).sum(axis=-1, keepdims=True) * ray
-    seen: Array = np.asarray(gaussian_filter1d((across**2).sum(axis=-1), window, axis=0, mode="nearest"))
-    return np.maximum(seen, 0)
+    depth = (change * ray).sum(axis=-1)
+    across = ((change - depth[..., None] * ray) ** 2).sum(axis=-1)
+    seen, made = (gaussian_filter1d(part, window, axis=0, mode="nearest") for part in (across, depth**2))
+    return np.maximum(seen, 0), np.maximum(made, 0)

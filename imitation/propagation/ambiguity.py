@@ -24,13 +24,14 @@ def ambiguous_spans(base: Base, *, progress: Progress | None = None) -> list[Amb
     Spans by key point, in the order of the base solution's names.
     """
     size = diagonal(base.rest)
-    anchors = np.where(base.keys.planted, depths_of(base.cameras, base.keys.places), np.nan)
-    anchors[0] = base.cameras[0].depth(base.keys.start)
-    depths = depths_of(base.cameras, base.lifted)
-    pairs = key_pairs(base.rest, base.faces, base.keys)
-    prepared = prepare_lift(
-        base.keys.pixels, base.cameras, base.keys.start, pairs, size, anchors, None, depths, LiftSettings()
-    )
-    parents = limb_parents(base.keys.start, pairs)
-    flags, other = find_ambiguous(*prepared, parents, progress)
-    return spans_of(flags, other, base.keys.names, size)
+    # Key points that only follow their mirror have no ray of their own.
+    seen = np.flatnonzero(base.keys.observed.any(axis=0))
+    pixels, places = base.keys.pixels[:, seen], base.keys.places[:, seen]
+    start, lifted = base.keys.start[seen], base.lifted[:, seen]
+    anchors = np.where(base.keys.planted[:, seen], depths_of(base.cameras, places), np.nan)
+    anchors[0] = base.cameras[0].depth(start)
+    pairs = key_pairs(base.rest, base.faces, base.keys.vertices[seen])
+    depths = depths_of(base.cameras, lifted)
+    prepared = prepare_lift(pixels, base.cameras, start, pairs, size, anchors, None, depths, LiftSettings())
+    flags, other = find_ambiguous(*prepared, limb_parents(start, pairs), progress)
+    return spans_of(flags, other, tuple(base.keys.names[key] for key in seen), size)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
 import attrs
@@ -20,6 +20,7 @@ from imitation.motion.lifting import LiftSettings, lift_tracks
 from imitation.motion.polishing import pixel_noise, polish
 from imitation.motion.rays import depths_of, lift_points, rays_of
 from imitation.motion.smoothing import smooth_depths
+from imitation.motion.symmetry import Mirror, follow_mirrors, hidden_names
 from imitation.progress import Progress, part
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 Method = Literal["joint", "paper"]
 OnFrame = Callable[[int, Array], None]
+FREE, MIRRORED = 0.02, 0.9
 SOFT = 0.999
 """Softness of a key point held by its track: a small give, so that a wrong track does not tear the mesh."""
 
@@ -79,6 +81,7 @@ def solve_base(
     *,
     method: Method = "joint",
     confidence: Mapping[str, ArrayLike] | None = None,
+    symmetry: Mapping[str, Mirror] | None = None,
     loss: Loss = "quadratic",
     beta: float = 1e-4,
     alpha: float = 10.0,
@@ -99,6 +102,8 @@ def solve_base(
     method : "joint" lifts all key points by one space-time solve; "paper" is the printed route: deform with rays,
         smooth the depths (eq. 12), deform with the upgraded 3D tracks.
     confidence : track name -> (n,) in [0, 1].
+    symmetry : track name -> its mirror on the other side, or (mirror, frames by which it is later). Where the track
+        is hidden it moves as its mirror does, also throughout the clip.
     loss, beta : of the anchors (eq. 3-4).
     alpha : depth smoothing of the printed route (eq. 12).
     deformer : a prepared `Deformer` of this mesh; made here by default.
@@ -114,7 +119,18 @@ def solve_base(
         raise InputError(f'The method must be "joint" or "paper", but is "{method}".')
     if not len(cameras):
         raise InputError("There are no cameras; solve or give one camera a frame first.")
-    keys = key_tracks(vertices, cameras, tracks, pairs, contacts or {}, confidence=confidence, beta=beta, loss=loss)
+    hidden = hidden_names(symmetry or {}, tracks, pairs)
+    keys = key_tracks(
+        vertices,
+        cameras,
+        tracks,
+        {name: vertex for name, vertex in pairs.items() if name not in hidden},
+        contacts or {},
+        confidence=confidence,
+        beta=beta,
+        loss=loss,
+        denoise=method == "joint",
+    )
     if len(keys) < 3:
         raise InputError(
             f"Only {len(keys)} track{'s are' if len(keys) > 1 else ' is'} paired with the character, "
@@ -125,7 +141,11 @@ def solve_base(
     clock.lap("prepare")
     solve = _solve_joint if method == "joint" else _solve_paper
     lifted, noise = solve(keys, vertices, faces, cameras, deformer, clock, alpha, settings, part(progress, 0.0, 0.55))
-    softness = key_softness(keys)
+    if symmetry:
+        places = {name: vertices[pairs[name]] for name in hidden}
+        keys, lifted = follow_mirrors(lifted, keys, places, pairs, symmetry)
+        noise = keys.noise
+    softness = key_softness(keys, mirrored=symmetry or {})
     frames = [points_constraint(keys.vertices, lifted[frame], softness[frame]) for frame in range(len(cameras))]
     posed = deformer.solve_sequence(frames, start=vertices, progress=part(progress, 0.55, 1.0), on_frame=on_frame)
     clock.lap("deformation")
@@ -145,7 +165,7 @@ def _solve_joint(
 ) -> tuple[Array, Array]:
     """Lift, deform once on rays and feet for a weak depth prior, lift again, polish."""
     size = diagonal(vertices)
-    pairs = key_pairs(vertices, faces, keys)
+    pairs = key_pairs(vertices, faces, keys.vertices)
     anchors = np.where(keys.planted, depths_of(cameras, keys.places), np.nan)
     first = lift_tracks(keys.pixels, cameras, keys.start, pairs, size, anchors=anchors, settings=settings)
     clock.lap("lifting")
@@ -216,16 +236,19 @@ def _deform_on_rays(
     return deformer.solve_sequence(frames, start=rest, progress=progress)
 
 
-def key_pairs(vertices: Array, faces: NDArray[np.int32], keys: KeyTracks) -> NDArray[np.int32]:
+def key_pairs(vertices: Array, faces: NDArray[np.int32], keys: NDArray[np.int64]) -> NDArray[np.int32]:
     """Pairs (p, 2) of key points whose geodesic regions on the character touch: their distance is roughly kept."""
     from imitation.geometry import key_adjacency
 
-    return np.asarray(key_adjacency(vertices, faces, keys.vertices.tolist()), np.int32).reshape(-1, 2)
+    return np.asarray(key_adjacency(vertices, faces, keys.tolist()), np.int32).reshape(-1, 2)
 
 
-def key_softness(keys: KeyTracks) -> Array:
+def key_softness(keys: KeyTracks, mirrored: Collection[str] = ()) -> Array:
     """Softness (n, k): contacts and frame 0 hard, the rest as far as its track is trusted, nearly free in gaps."""
-    softness = np.maximum(SOFT * keys.confidence, 0.02)
+    softness = np.maximum(SOFT * keys.confidence, FREE)
+    for key, name in enumerate(keys.names):
+        if name in mirrored:
+            softness[~keys.observed[:, key], key] = MIRRORED
     softness[keys.planted] = 1.0
     softness[0] = 1.0
     return softness

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from imitation.cameras import CameraPath
 from imitation.motion.anchors import Loss
 from imitation.motion.contacts import Contact
+from imitation.motion.symmetry import Mirror
 from imitation.progress import Progress, part
 from imitation.propagation.base import Method, OnFrame, make_deformer, solve_base
 from imitation.propagation.edits import check_places, commit_edit
@@ -31,6 +32,7 @@ def imitate(
     edits: Mapping[int, Mapping[int, ArrayLike]] | None = None,
     method: Method = "joint",
     confidence: Mapping[str, ArrayLike] | None = None,
+    symmetry: Mapping[str, Mirror] | None = None,
     loss: Loss = "quadratic",
     alpha: float = 10.0,
     smooth: bool | None = None,
@@ -54,6 +56,7 @@ def imitate(
     edits : frame -> {vertex: place (3,) world} as the user dragged them.
     method : "joint" (default) or "paper", the printed route.
     confidence : track name -> (n,) in [0, 1].
+    symmetry : track name -> mirror whose motion it follows where it is hidden, see `solve_base`.
     loss : "robust" lets an anchor's depth change suddenly (eq. 3).
     alpha : depth smoothing of the printed route (eq. 12).
     smooth, follow, end, reach : see `propagate`.
@@ -81,7 +84,7 @@ def imitate(
     share = 0.7 if moves else 1.0
     base = solve_base(
         vertices, faces, cameras, tracks, pairs, contacts,
-        method=method, confidence=confidence, loss=loss, alpha=alpha, deformer=deformer,
+        method=method, confidence=confidence, symmetry=symmetry, loss=loss, alpha=alpha, deformer=deformer,
         progress=part(progress, 0.0, share), on_frame=None if moves else on_frame,
     )  # fmt: skip
     check_places(base, moves)

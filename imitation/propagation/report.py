@@ -69,4 +69,5 @@ def _reprojection(base: Base) -> dict[str, float]:
     points = base.key_points
     squared = ((project_points(base.cameras, points) - base.keys.pixels) ** 2).sum(axis=2)
     squared[~base.keys.observed] = np.nan
-    return {name: float(np.sqrt(np.nanmean(squared[:, key]))) for key, name in enumerate(base.keys.names)}
+    seen = np.flatnonzero(base.keys.observed.any(axis=0)).tolist()
+    return {base.keys.names[key]: float(np.sqrt(np.nanmean(squared[:, key]))) for key in seen}

@@ -197,3 +197,34 @@ def test_unknown_method_is_refused(walker: Walker) -> None:
     """The methods are named."""
     with pytest.raises(InputError, match='"joint" or "paper"'):
         solve_base(*walker.arguments, method="magic", deformer=walker.deformer)  # type: ignore[arg-type]
+
+
+def test_a_hidden_limb_follows_its_mirror() -> None:
+    """A leg without any track moves as its mirror half a cycle later, nearer to the truth than one that just hangs."""
+    walker = film("quadruped", 46, "flat", 60.0, seed=4)
+    rest, faces, cameras, tracks, pairs, contacts = walker.arguments
+    hidden = ["right front paw", "right front knee"]
+    without = {name: track for name, track in tracks.items() if name not in hidden}
+    stands = {name: spans for name, spans in contacts.items() if name not in hidden}
+    mirrors = {name: (name.replace("right", "left"), 15) for name in hidden}
+    result = imitate(rest, faces, cameras, without, pairs, stands, symmetry=mirrors, deformer=walker.deformer)
+    assert list(result.names[-2:]) == hidden
+    shown = {name: pairs[name] for name in without}
+    free = imitate(rest, faces, cameras, without, shown, stands, deformer=walker.deformer)
+    paw, later = pairs[hidden[0]], slice(16, None)
+    error = [np.linalg.norm((made.vertices - walker.walk.vertices)[later, paw]) for made in (result, free)]
+    assert error[0] < 0.7 * error[1]
+
+
+@pytest.mark.parametrize(
+    ("symmetry", "words"),
+    [
+        ({"third eye": "nose"}, "which has no pair"),
+        ({"nose": "third eye"}, "which has no pair"),
+        ({"nose": "nose"}, "its own mirror"),
+    ],
+)
+def test_bad_symmetry_is_named(walker: Walker, symmetry: dict, words: str) -> None:
+    """A mirror that does not exist is one sentence."""
+    with pytest.raises(InputError, match=words):
+        solve_base(*walker.arguments, symmetry=symmetry, deformer=walker.deformer)
