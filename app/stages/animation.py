@@ -47,11 +47,7 @@ def base(document: Document, character: Character) -> Stage:
 
 def animation(document: Document, character: Character) -> Stage:
     """The character's motion with all edits."""
-    edits = tuple(
-        (frame, committed, edit.until)
-        for frame, edit in character.edits.items()
-        if (committed := _counting(edit, set(character.pairs.values())))
-    )
+    edits = _edits(character)
     following = tuple((vertex, track) for vertex, track in character.following.items())
     inputs = (
         character.id,
@@ -75,9 +71,20 @@ def ambiguous(document: Document, character: Character) -> Stage:
 
 def comparison(document: Document, character: Character, variant: str) -> Stage:
     """One of the paper's comparisons, from the same edits."""
-    needs = (base(document, character), animation(document, character))
+    needs = (base(document, character),)
+    inputs = (variant, _edits(character), character.solve.keep_volume)
     name, label = f"compare/{character.id}/{variant}", f"Comparing {character.name} with {variant.replace('_', ' ')}"
-    return Stage(name, label, _comparison, (variant,), needs, weight=2.0)
+    return Stage(name, label, _comparison, inputs, needs, weight=2.0)
+
+
+def _edits(character: Character) -> tuple[Any, ...]:
+    """Give (frame, committed places, end of the correction) of the edits that count, in the order of their frames."""
+    paired = set(character.pairs.values())
+    return tuple(
+        (frame, committed, edit.until)
+        for frame, edit in sorted(character.edits.items())
+        if (committed := _counting(edit, paired))
+    )
 
 
 def _paired(document: Document, character: Character) -> list[Track]:
@@ -129,6 +136,7 @@ def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter
         {name: _intervals(placed) for name, placed in zip(names, contacts, strict=True) if placed},
         method=method,
         confidence={name: track.confidence for name, track in zip(names, tracks, strict=True)},
+        symmetry={name: mirror for name, mirror in mirrors if mirror in names},
         deformer=deformer,
         progress=context.progress,
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),
@@ -176,7 +184,12 @@ def _ambiguous(context: Context, inputs: tuple[()], solved: Any) -> Any:
     return ambiguous_spans(solved, progress=context.progress)
 
 
-def _comparison(context: Context, inputs: tuple[str], solved: Any, animated: Animation) -> Any:
+def _comparison(context: Context, inputs: Any, solved: Any) -> Any:
     from imitation.propagation import compare
 
-    return compare(solved, animated, inputs[0], progress=context.progress)
+    variant, edits, keep_volume = inputs
+    committed = {frame: {vertex: np.array(place) for vertex, place in places} for frame, places, _ in edits}
+    deformer = context.media.deformer(solved.rest, solved.faces, keep_volume)
+    made = compare(solved, committed, variant, deformer=deformer, progress=context.progress)
+    context.media.return_deformer(solved.rest, keep_volume, deformer)
+    return made
