@@ -31,7 +31,7 @@ def alignment(document: Document, character: Character) -> Stage:
 def base(document: Document, character: Character) -> Stage:
     """The character's motion before any edit."""
     paired = _paired(document, character)
-    mirrors = tuple((track.id, track.mirror) for track in paired if track.mirror and character.solve.symmetry)
+    mirrors = _mirrors(document, paired) if character.solve.symmetry else ()
     needs = (
         scene.world(document),
         alignment(document, character),
@@ -91,6 +91,22 @@ def _paired(document: Document, character: Character) -> list[Track]:
     return [track for track in document.tracks if track.id in character.pairs]
 
 
+def _mirrors(document: Document, paired: list[Track]) -> tuple[tuple[str, str], ...]:
+    """Give (hidden, seen) pairs: of two mirrors the one with fewer clicks in sight follows the other."""
+    ids = {track.id for track in paired}
+    found = []
+    for track in paired:
+        if track.mirror in ids:
+            other = document.track(track.mirror)
+            if (_in_sight(track), track.id) < (_in_sight(other), other.id):
+                found.append((track.id, other.id))
+    return tuple(found)
+
+
+def _in_sight(track: Track) -> int:
+    return sum(not any(frame in gap for gap in track.occluded) for frame in track.clicks)
+
+
 def _vertices(character: Character, paired: list[Track]) -> tuple[tuple[str, int], ...]:
     return tuple((track.id, character.pairs[track.id]) for track in paired)
 
@@ -123,7 +139,7 @@ def _alignment(context: Context, inputs: tuple[Any, Any, Alignment], world: Worl
 def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter, *needs: Any) -> Any:
     from imitation.propagation import solve_base
 
-    paired, method, keep_volume, _ = inputs
+    paired, method, keep_volume, mirrors = inputs
     tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
     names = [name for name, _ in paired]
     deformer = context.media.deformer(aligned.vertices, aligned.faces, keep_volume)
@@ -136,7 +152,7 @@ def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter
         {name: _intervals(placed) for name, placed in zip(names, contacts, strict=True) if placed},
         method=method,
         confidence={name: track.confidence for name, track in zip(names, tracks, strict=True)},
-        symmetry={name: mirror for name, mirror in mirrors if mirror in names},
+        symmetry=dict(mirrors) or None,
         deformer=deformer,
         progress=context.progress,
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),
