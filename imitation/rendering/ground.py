@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 import attrs
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -53,6 +55,29 @@ class Footing:
     points: NDArray[np.float64] = attrs.field(converter=_rows)
     normal: NDArray[np.float64] = attrs.field(converter=_vector, default=(0.0, 0.0, 1.0))
     reach: float | None = None
+
+
+def footing_at(
+    contacts: Mapping[str, Sequence[tuple[int, int, ArrayLike]]], frame: int, normal: ArrayLike = (0.0, 0.0, 1.0)
+) -> Footing | None:
+    """The ground near the feet in one frame; between two contacts a foot's level moves evenly from one to the next.
+
+    Parameters
+    ----------
+    contacts : foot to [(first frame, last frame, place (3,)), ...], frames both included.
+
+    Returns
+    -------
+    None where no foot has a contact.
+    """
+    points = []
+    for intervals in contacts.values():
+        ordered = sorted(intervals, key=lambda each: each[0])
+        times = [float(moment) for first, last, _ in ordered for moment in (first, max(last, first + 1e-3))]
+        places = np.array([place for _, _, place in ordered for _ in range(2)], np.float64).reshape(-1, 3)
+        if len(times):
+            points.append([float(np.interp(frame, times, places[:, axis])) for axis in range(3)])
+    return Footing(points, normal) if points else None
 
 
 _STEP = 2

@@ -33,10 +33,10 @@ class Look:
     """
 
     key: tuple[float, float, float] | None = None
-    key_light: tuple[float, float, float] = (1.42, 1.34, 1.23)
-    fill_light: tuple[float, float, float] = (0.16, 0.19, 0.24)
-    sky: tuple[float, float, float] = (0.38, 0.42, 0.49)
-    bounce: tuple[float, float, float] = (0.20, 0.18, 0.15)
+    key_light: tuple[float, float, float] = (1.62, 1.52, 1.38)
+    fill_light: tuple[float, float, float] = (0.13, 0.155, 0.20)
+    sky: tuple[float, float, float] = (0.30, 0.34, 0.41)
+    bounce: tuple[float, float, float] = (0.16, 0.14, 0.115)
     base: tuple[float, float, float] = (0.72, 0.67, 0.62)
     gloss: float = 0.10
     shadow: float = 0.42
@@ -71,7 +71,7 @@ def key_direction(look: Look, camera: Camera, up: ArrayLike) -> NDArray[np.float
     above = np.asarray(up, np.float64)
     level = [axis - above * (axis @ above) for axis in (camera.R[0], camera.R[2])]
     right, ahead = (axis / max(float(np.linalg.norm(axis)), 1e-9) for axis in level)
-    direction = 1.35 * above - 0.75 * right - 0.65 * ahead
+    direction = 1.25 * above - 1.0 * right - 0.35 * ahead
     unit: NDArray[np.float64] = direction / np.linalg.norm(direction)
     return unit
 

@@ -18,6 +18,7 @@ from imitation.rendering import (
     Plane,
     Renderer,
     composite,
+    footing_at,
     ground_shadow,
     render_mesh,
     render_sequence,
@@ -205,6 +206,16 @@ def test_each_foot_shades_its_own_step() -> None:
     assert shade[y, x] < 0.02
     with pytest.raises(InputError, match="near the feet"):
         Footing([[0, np.nan, 0]])
+
+
+def test_the_ground_near_the_feet_follows_the_contacts() -> None:
+    """A standing foot's ground is its contact; between two contacts the level changes evenly; none without contacts."""
+    contacts = {"left": [(10, 20, (1.0, 0, 0.2)), (0, 5, (0.0, 0, 0))], "right": [(0, 30, (0, 1.0, 0))], "tail": []}
+    for frame, place in [(0, (0, 0, 0)), (5, (0, 0, 0)), (7.5, (0.5, 0, 0.1)), (15, (1, 0, 0.2)), (40, (1, 0, 0.2))]:
+        footing = footing_at(contacts, frame)
+        assert footing is not None
+        np.testing.assert_allclose(footing.points, [place, (0, 1, 0)], atol=1e-9)
+    assert footing_at({"tail": []}, 3) is None
 
 
 def test_the_background_hides_what_is_behind_it() -> None:
