@@ -6,6 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from resources.world.body import Body, body_of, make_body
 from resources.world.coats import cloth, fox_fur, hound_fur
@@ -62,10 +63,10 @@ def _colours(places, coat):  # type: ignore[no-untyped-def]
     return found
 
 
-def vertex_colours(body: Body, coat: str) -> np.ndarray:  # type: ignore[type-arg]
+def vertex_colours(body: Body, coat: str) -> NDArray[np.uint8]:
     """Colours (n, 3) uint8 of a body's vertices in the coat "hound", "fox" or "cloth", as in soft light."""
     linear = _colours(np.ascontiguousarray(body.vertices), ["hound", "fox", "cloth"].index(coat))
-    colours: np.ndarray = np.rint(255 * develop(1.5 * linear)).astype(np.uint8)  # type: ignore[type-arg]
+    colours: NDArray[np.uint8] = np.rint(255 * develop(1.5 * linear)).astype(np.uint8)
     return colours
 
 

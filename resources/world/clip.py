@@ -114,7 +114,7 @@ def make_clip(
         cameras = make_camera(
             walked.centre, body.diagonal, azimuth=azimuth, style=style, seed=seed, size=look.size, distance=distance
         )
-    scene = {"garden": lambda: garden(terrain, seed=seed), "wall": wall, "room": lambda: room(seed=seed)}[place]()
+    scene = wall() if place == "wall" else room(seed=seed) if place == "room" else garden(terrain, seed=seed)
     near = None
     if hidden:
         camera = cameras[frames // 2]

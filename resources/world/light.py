@@ -5,6 +5,7 @@ from __future__ import annotations
 import attrs
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from resources.world.raster import Ids, fill_light
 from resources.world.skeleton import Array
@@ -26,7 +27,7 @@ class LightMaps:
     axes: Array
     middle: Array
     texel: float
-    maps: np.ndarray  # type: ignore[type-arg]
+    maps: NDArray[np.float32]
 
 
 def sky_directions(count: int) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, inline="always")  # type: ignore[untyped-decorator]
 def hashed(x: int, y: int, z: int) -> float:
     """A number in [0, 1) for an integer place."""
     h = (x * 374761393 + y * 668265263 + z * 2147483647) & 0xFFFFFFFF
@@ -15,7 +15,7 @@ def hashed(x: int, y: int, z: int) -> float:
     return ((h ^ (h >> 13)) & 0xFFFFFF) / 16777216.0
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
 def noise(x: float, y: float, z: float) -> float:
     """Smooth value noise in [0, 1], one lump a unit."""
     fx, fy, fz = np.floor(x), np.floor(y), np.floor(z)
@@ -26,10 +26,11 @@ def noise(x: float, y: float, z: float) -> float:
     b = hashed(i, j + 1, k) * (1 - u) + hashed(i + 1, j + 1, k) * u
     c = hashed(i, j, k + 1) * (1 - u) + hashed(i + 1, j, k + 1) * u
     d = hashed(i, j + 1, k + 1) * (1 - u) + hashed(i + 1, j + 1, k + 1) * u
-    return (a * (1 - v) + b * v) * (1 - w) + (c * (1 - v) + d * v) * w
+    total: float = (a * (1 - v) + b * v) * (1 - w) + (c * (1 - v) + d * v) * w
+    return total
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
 def layers(x: float, y: float, z: float, size: float, octaves: int, footprint: float) -> float:
     """Noise of ``octaves`` layers about 0 (roughly -0.5 to 0.5), the coarsest with lumps of ``size`` metres.
 
@@ -47,7 +48,7 @@ def layers(x: float, y: float, z: float, size: float, octaves: int, footprint: f
     return total
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
 def cells(x: float, y: float, z: float) -> tuple[float, float, float]:
     """Distance to the nearest and second nearest scattered point, one a unit cube, and a number of the nearest."""
     i, j, k = int(np.floor(x)), int(np.floor(y)), int(np.floor(z))
@@ -67,7 +68,7 @@ def cells(x: float, y: float, z: float) -> tuple[float, float, float]:
     return np.sqrt(first), np.sqrt(second), name
 
 
-@njit(cache=True, nogil=True, inline="always")
+@njit(cache=True, nogil=True, inline="always")  # type: ignore[untyped-decorator]
 def step(low: float, high: float, x: float) -> float:
     """From 0 at ``low`` to 1 at ``high``, smoothly."""
     u = min(1.0, max(0.0, (x - low) / (high - low)))

@@ -10,6 +10,7 @@ from imitation.geometry.projection import Camera
 from resources.world.light import LightMaps, lit
 from resources.world.materials import albedo, relief
 from resources.world.noise import layers
+from resources.world.raster import Ids
 from resources.world.shapes import Geometry
 from resources.world.skeleton import Array
 
@@ -63,12 +64,12 @@ def _sky_light(x, y, z, nx, ny, nz, axes, a_mid, a_texel, a_maps, b_mid, b_texel
 
 
 @njit(cache=True, nogil=True)
-def _film(
+def _film(  # type: ignore[no-untyped-def]
     picture, ids, closeness, inverse, faces, normals, coords, shades, materials, first_moving,
     K_inverse, R, centre, focal, ss, sun_dir, sun_power,
     axes, a_mid, a_texel, a_maps, b_mid, b_texel, b_maps,
     sun_axis, c_mid, c_texel, c_map, d_mid, d_texel, d_map,
-):  # type: ignore[no-untyped-def]  # fmt: skip
+):  # fmt: skip
     height, width = picture.shape[0], picture.shape[1]
     for row in range(height):
         for column in range(width):
@@ -171,7 +172,7 @@ def _film(
 
 
 def film(
-    seen: tuple[Array, np.ndarray, Array],  # type: ignore[type-arg]
+    seen: tuple[Array, Ids, Array],
     geometry: Geometry,
     first_moving: int,
     camera: Camera,

@@ -135,7 +135,8 @@ def quadruped(proportions: Proportions = SUBJECT) -> Skeleton:
     body.bone("head", "neck", poll)
 
     def head(x: float, y: float, z: float) -> Array:
-        return poll + p.head * np.array([x, y, z])
+        place: Array = poll + p.head * np.array([x, y, z])
+        return place
 
     h = p.head
     body.cover("head", head(0.0, 0, 0.01), head(0.09, 0, 0.005), 0.082 * h, 0.074 * h)

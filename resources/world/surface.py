@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -74,7 +76,7 @@ def relax(points: Array, faces: Faces, skeleton: Skeleton, rounds: int) -> Array
     i = faces.ravel()
     j = np.roll(faces, -1, axis=1).ravel()
     n = len(points)
-    links = sparse.csr_matrix((np.ones(2 * len(i)), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
+    links: Any = sparse.csr_matrix((np.ones(2 * len(i)), (np.r_[i, j], np.r_[j, i])), shape=(n, n))
     links.data[:] = 1.0
     degree = np.asarray(links.sum(axis=1)).ravel()
     for _ in range(rounds):
