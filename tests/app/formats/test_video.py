@@ -300,3 +300,23 @@ def test_bad_folders_of_pictures(tmp_path: Path) -> None:
             images[1]
         with pytest.raises(InputError, match=r"3\.png is not a picture"):
             images[2]
+
+
+@settings(deadline=None, max_examples=40)
+@given(data=st.data())
+def test_damaged_videos_give_frames_or_one_sentence(
+    tmp_path_factory: pytest.TempPathFactory, clips: Path, data: st.DataObject
+) -> None:
+    """Bytes changed anywhere, or the end cut off: whole pictures or an InputError, nothing else, and no hanging."""
+    path = tmp_path_factory.getbasetemp() / "damaged.mp4"
+    content = bytearray((clips / "gop12.mp4").read_bytes())
+    for _ in range(data.draw(st.integers(1, 5))):
+        start = data.draw(st.integers(0, len(content) - 1))
+        content[start : start + data.draw(st.integers(1, 40))] = data.draw(st.binary(min_size=1, max_size=40))
+    path.write_bytes(content[: data.draw(st.integers(len(content) // 2, len(content)))])
+    try:
+        with open_video(path, partial=data.draw(st.booleans())) as video:
+            for frame in (0, len(video) // 2, len(video) - 1, 3 % len(video)):
+                assert video[frame].shape == (video.size[1], video.size[0], 3)
+    except InputError:
+        return
