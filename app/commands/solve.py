@@ -10,6 +10,7 @@ import click
 import numpy as np
 
 from app.actions.marks import character_named, track_named
+from app.actions.results import rate
 from app.actions.session import Session
 from app.commands.console import Console
 from app.commands.project import PATH, PROJECT
@@ -62,9 +63,15 @@ def track(console: Console, project: Path, names: tuple[str, ...], target: Path 
             raise InputError("This project has no tracks yet: click points with set --click NAME FRAME X Y.")
         solved = console.compute(session, "Tracking", tuple(session.stages.track(each.id) for each in chosen))
         if target is not None:
-            from app.formats.tracks import write_tracks
+            from app.formats.tracks import TrackFile, write_tracks
 
-            write_tracks(target, {each.name: found for each, found in zip(chosen, solved, strict=True)})
+            made = {
+                each.name: TrackFile(found.positions, found.confidence, tuple(found.state))
+                for each, found in zip(chosen, solved, strict=True)
+            }
+            clip = document.clip
+            assert clip is not None
+            write_tracks(target, made, size=(clip.width, clip.height), fps=rate(session))
         values, lines = {}, []
         for each, found in zip(chosen, solved, strict=True):
             seen = int(np.isfinite(found.positions).all(axis=1).sum())
