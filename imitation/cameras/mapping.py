@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from imitation.cameras.features import Features, Matches
+from imitation.cameras.follow import Tracks
 from imitation.geometry.projection import Array
 from imitation.progress import Progress, silent
 
@@ -48,6 +49,7 @@ def _database(
     path: Path,
     features: Sequence[Features],
     matches: Mapping[tuple[int, int], Matches],
+    tracks: Tracks,
     size: tuple[int, int],
     focal: float | None,
     tick: Callable[[float], None],
@@ -57,6 +59,7 @@ def _database(
     options = pycolmap.TwoViewGeometryOptions()
     options.ransac.random_seed = 0
     options.ransac.max_error = 3.0
+    places = [np.concatenate([f.pixels, tracks.pixels[f.frame]]) for f in features]
     database = pycolmap.Database.open(path)
     try:
         database.write_camera(camera, True)
@@ -69,12 +72,13 @@ def _database(
             frame = pycolmap.Frame(frame_id=number, rig_id=1)
             frame.add_data_id(image.data_id)
             database.write_frame(frame, True)
-            database.write_keypoints(number, (found.pixels + CENTRE).astype(np.float32))
+            database.write_keypoints(number, (places[number - 1] + CENTRE).astype(np.float32))
         for done, ((i, j), pair) in enumerate(matches.items()):
             tick(done / len(matches))
+            pair = np.concatenate([pair, _corners(features[i], features[j], tracks)])
             if len(pair) < options.min_num_inliers:
                 continue
-            first, second = features[i].pixels + CENTRE, features[j].pixels + CENTRE
+            first, second = places[i] + CENTRE, places[j] + CENTRE
             verified = pycolmap.estimate_two_view_geometry(
                 camera, first, camera, second, pair.astype(np.uint32), options
             )
@@ -82,6 +86,13 @@ def _database(
             database.write_two_view_geometry(i + 1, j + 1, verified)
     finally:
         database.close()
+
+
+def _corners(first: Features, second: Features, tracks: Tracks) -> Matches:
+    """Followed corners that two key frames share, as matches; they are listed after the features."""
+    _, a, b = np.intersect1d(tracks.ids[first.frame], tracks.ids[second.frame], True, return_indices=True)
+    pairs: Matches = np.stack([a + len(first.pixels), b + len(second.pixels)], axis=1)
+    return pairs
 
 
 def _options(pycolmap: Any, focal: float | None) -> Any:
@@ -101,20 +112,25 @@ def _options(pycolmap: Any, focal: float | None) -> Any:
     return options
 
 
-def _read(best: Any) -> Model:
+def _read(best: Any, features: Mapping[int, Features]) -> Model:
+    """Poses, and the points of features; corners are triangulated anew with the frames between."""
     camera = next(iter(best.cameras.values()))
     names = {number: int(image.name) for number, image in best.images.items() if image.has_pose}
     poses = {}
     for number, frame in sorted(names.items()):
         matrix = best.images[number].cam_from_world().matrix()
         poses[frame] = (np.array(matrix[:, :3]), np.array(matrix[:, 3]))
-    points, frames, index, pixels = [], [], [], []
-    for place, identity in enumerate(sorted(best.points3D)):
+    points: list[Array] = []
+    frames, index, pixels = [], [], []
+    for identity in sorted(best.points3D):
         point = best.points3D[identity]
+        track = sorted(point.track.elements, key=lambda e: (e.image_id, e.point2D_idx))
+        if track[0].point2D_idx >= len(features[names[track[0].image_id]].pixels):
+            continue
         points.append(np.array(point.xyz))
-        for element in sorted(point.track.elements, key=lambda e: (e.image_id, e.point2D_idx)):
+        for element in track:
             frames.append(names[element.image_id])
-            index.append(place)
+            index.append(len(points) - 1)
             pixels.append(best.images[element.image_id].points2D[element.point2D_idx].xy - CENTRE)
     return Model(
         float(camera.params[0]),
@@ -129,12 +145,15 @@ def _read(best: Any) -> Model:
 def map_key_frames(
     features: Sequence[Features],
     matches: Mapping[tuple[int, int], Matches],
+    tracks: Tracks,
     size: tuple[int, int],
     *,
     focal: float | None = None,
     progress: Progress | None = None,
 ) -> Model | None:
     """Poses of key frames and their points; None where the mapper finds no model.
+
+    Features carry the wide pairs, followed corners the near ones, where blur or grass leaves few features alike.
 
     Of several models the one with most frames is taken. The mapper runs in a thread of its own with one thread of
     work and a fixed seed; it stops between two images, which may take longer than ``progress`` asks for.
@@ -148,14 +167,23 @@ def map_key_frames(
         with tempfile.TemporaryDirectory(prefix="cameras-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             (folder / "models").mkdir()
-            _database(pycolmap, folder / "features.db", features, matches, size, focal, lambda part: report(0.4 * part))
+            _database(
+                pycolmap,
+                folder / "features.db",
+                features,
+                matches,
+                tracks,
+                size,
+                focal,
+                lambda part: report(0.4 * part),
+            )
             models = _run(pycolmap, folder, _options(pycolmap, focal), len(features), report)
     finally:
         pycolmap.logging.minloglevel = before
     if not models:
         return None
     best = max(sorted(models.items()), key=lambda item: (item[1].num_reg_images(), item[1].num_points3D(), -item[0]))
-    return _read(best[1])
+    return _read(best[1], {f.frame: f for f in features})
 
 
 def _run(pycolmap: Any, folder: Path, options: Any, count: int, report: Progress) -> dict[int, Any]:

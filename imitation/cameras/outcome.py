@@ -15,13 +15,14 @@ from imitation.cameras.path import CameraPath, Verdict
 from imitation.cameras.plane import least_squares_plane
 from imitation.cameras.poses import Pose, Sightings, pose_all, triangulate
 from imitation.cameras.rotation import turning_bundle
+from imitation.cameras.verdict import FocalKnown
 from imitation.cameras.world import likely_world
 from imitation.geometry.projection import Array
 from imitation.progress import Progress, part
 
 FAR = 3.0  # pixels: an observation that misses by more, or by 6 times the median, is left out
 NARROW = np.radians(0.5)
-FLAT = 1.0 / 960  # of the longest side: points that leave their common plane by less are flat
+FLAT = 0.4 / 960  # of the longest side: points that leave their common plane by less are flat
 NO_ANGLE = np.radians(1.0)
 BLURRY = 1.5 / 960
 
@@ -73,16 +74,18 @@ def turning(
     matches: Mapping[tuple[int, int], Matches],
     focal: float,
     given: float | None,
-    open_focal: bool,
+    known: FocalKnown,
     progress: Progress,
 ) -> CameraPath:
     """Rotations and the focal length of a camera that does not travel; all centres coincide."""
-    start = given or (GUESS * max(clip.working_size) if open_focal else focal)
+    start = given or (GUESS * max(clip.working_size) if known == "not" else focal)
     bundle, guessed = turning_bundle(tracks, features, matches, start, clip.working_centre)
-    bundle = refined(bundle, given is None and not open_focal, progress, turn_only=True)
+    bundle = refined(bundle, given is None and known != "not", progress, turn_only=True)
     reason = "The camera only turns: no depth can be recovered, and scale is unknown."
-    if open_focal:
+    if known == "not":
         reason += " It turns too little to tell the focal length, which is guessed."
+    if known == "weakly":
+        reason += " The focal length is weakly known."
     return path_of(clip, bundle, "rotation", reason + _interpolated(guessed), guessed)
 
 

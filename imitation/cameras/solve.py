@@ -10,10 +10,10 @@ import numpy as np
 from imitation.cameras.clip import Clip
 from imitation.cameras.features import find_features, match, match_pairs, pairs_of
 from imitation.cameras.follow import Tracks, follow_corners, key_frames
-from imitation.cameras.mapping import map_key_frames
+from imitation.cameras.mapping import GUESS, map_key_frames
 from imitation.cameras.outcome import failed, moving, still, turning
 from imitation.cameras.path import CameraPath
-from imitation.cameras.verdict import focal_is_open, stands_still, weigh, wide_pairs
+from imitation.cameras.verdict import focal_known, stands_still, weigh, wide_pairs
 from imitation.errors import InputError
 from imitation.progress import Progress, part, steps
 
@@ -74,9 +74,11 @@ def solve_cameras(
         evidence = weigh(wide, clip.working_centre, longest, given)
         long_lens = given is None and evidence.focal > LONG_LENS * longest
         if evidence.rotation < evidence.epipolar and not long_lens:
-            open_focal = given is None and focal_is_open(wide, clip.working_centre, evidence.focal)
-            return turning(clip, tracks, features, matches, evidence.focal, given, open_focal, part(progress, 0.6, 1.0))
-    model = map_key_frames(features, matches, clip.working_size, focal=given, progress=part(progress, 0.6, 0.85))
+            known = focal_known(wide, clip.working_centre, evidence.focal, GUESS * longest) if given is None else "well"
+            return turning(clip, tracks, features, matches, evidence.focal, given, known, part(progress, 0.6, 1.0))
+    model = map_key_frames(
+        features, matches, tracks, clip.working_size, focal=given, progress=part(progress, 0.6, 0.85)
+    )
     if model is None or len(model.poses) < max(3, 0.3 * len(keys)):
         return failed(
             clip,
@@ -88,14 +90,14 @@ def solve_cameras(
 
 def _bare(clip: Clip, tracks: Tracks) -> str:
     """Why the corners are not enough to go on, or nothing."""
-    for frame in np.flatnonzero((tracks.survived < LOST) & (tracks.likeness < UNLIKE)):
-        before, after = find_features(clip, int(frame) - 1), find_features(clip, int(frame))
-        if len(match(before, after)) < BARE:
-            return f"The clip cuts to another picture at frame {frame}: split it there and solve each part by itself."
     seen = np.array([len(i) for i in tracks.ids])
     if np.median(seen) < BARE:
         return (
             f"The background shows too few features (about {int(np.median(seen))} a frame): it may be blank or blurred,"
             " or the masks may cover too much."
         )
+    for frame in np.flatnonzero((tracks.survived < LOST) & (tracks.likeness < UNLIKE)):
+        before, after = find_features(clip, int(frame) - 1), find_features(clip, int(frame))
+        if min(len(before.pixels), len(after.pixels)) > 5 * BARE > 5 * len(match(before, after)):
+            return f"The clip cuts to another picture at frame {frame}: split it there and solve each part by itself."
     return ""

@@ -7,6 +7,7 @@ limit), for the dimension of what it allows each match, and for its parameters.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 import attrs
 import numpy as np
@@ -17,6 +18,7 @@ from imitation.geometry.projection import Array
 
 SIGMA = 1.5 / 960  # of the longest side: a model that misses by less leaves too little parallax for a depth
 FEWEST = 40
+SHARED = 30  # corners that two frames must share to be compared
 STILL = 0.75 / 960  # a corner of a static camera stays this close to where it was first seen
 LOG4 = float(np.log(4.0))
 
@@ -52,23 +54,26 @@ class Evidence:
 
 
 def stands_still(tracks: Tracks, longest: int) -> bool:
-    """Whether most of the long-lived corners never leave their place, and the picture as a whole does not either."""
-    corner = np.concatenate(tracks.ids)
-    if not len(corner) or len(tracks) < 2:
-        return len(tracks) == 1
-    pixels = np.concatenate(tracks.pixels)
-    order = np.argsort(corner, kind="stable")
-    corner, pixels = corner[order], pixels[order]
-    start = np.searchsorted(corner, np.arange(corner[-1] + 1))
-    life = np.diff(np.append(start, len(corner)))
-    seen = life > 0
-    start, life = start[seen], life[seen]
-    off = np.linalg.norm(pixels - np.repeat(pixels[start], life, axis=0), axis=1)
-    far = np.maximum.reduceat(off, start)
-    weight = np.where(life >= min(5, len(tracks)), life, 0)
-    if not weight.any():
+    """Whether in all pairs of frames, near and far, many corners are where they were and none stand out together.
+
+    The rest may move: a subject without a mask, its shadow, noise on a blank floor.
+    """
+    count, near = len(tracks), STILL * longest
+    if count == 1:
+        return True
+    shares, shifts, widest, lag = [], [], 0, 1
+    while lag < count:
+        for frame in range(0, count - lag, max(1, lag // 2)):
+            a, b = tracks.common(frame, frame + lag)
+            if len(a) >= SHARED:
+                shares.append(float((np.linalg.norm(b - a, axis=1) < near).mean()))
+                shifts.append(float(np.linalg.norm(np.median(b - a, axis=0))))
+                widest = lag
+        lag = 2 * lag + 1
+    if widest < min((count - 1) / 2, 10):
         return False
-    return float(weight[far < STILL * longest].sum() / weight.sum()) > 0.6
+    still = (np.array(shares) > 0.4) & (np.array(shifts) < 0.7 * near)
+    return float(still.mean()) > 0.95
 
 
 def wide_pairs(features: Sequence[Features], matches: Mapping[tuple[int, int], Matches]) -> list[Wide]:
@@ -131,14 +136,19 @@ def rotation_focal(wide: Sequence[Wide], centre: Array, longest: int) -> float:
     return float(np.exp(0.5 * (low + high)))
 
 
-def focal_is_open(wide: Sequence[Wide], centre: Array, focal: float) -> bool:
-    """Whether rotations explain the pairs hardly worse with a focal length a third shorter or half longer."""
+FocalKnown = Literal["well", "weakly", "not"]
+
+
+def focal_known(wide: Sequence[Wide], centre: Array, focal: float, guess: float) -> FocalKnown:
+    """How much worse rotations explain the pairs with another focal length: "not" if the guess does as well."""
 
     def missed(f: float) -> float:
         return float(np.median(np.concatenate([turn_between(w.a, w.b, f, centre)[1] for w in wide])))
 
     here = missed(focal)
-    return min(missed(focal / 1.5), missed(focal * 1.5)) < 1.3 * here + 0.05
+    if missed(guess) < 1.1 * here + 0.02 and min(missed(focal / 1.5), missed(focal * 1.5)) < 1.1 * here + 0.02:
+        return "not"
+    return "weakly" if min(missed(focal / 1.25), missed(focal * 1.25)) < 1.2 * here + 0.02 else "well"
 
 
 def _score(missed: Array, sigma: float, dimension: int, parameters: float) -> float:
