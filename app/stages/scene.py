@@ -37,7 +37,8 @@ def world(document: Document) -> Stage:
 def contacts(document: Document, track: Track) -> Stage:
     """The contacts of a track with their places, in the world."""
     needs = (world(document), tracking.track(document, track), cameras(document))
-    inputs = (track.name, track.contacts, document.world)
+    anchored = document.world.ground == "depth" and document.world.depth_track == track.id
+    inputs = (track.name, track.contacts, document.world, anchored)
     return Stage(f"contacts/{track.id}", f"Placing contacts of {track.name}", _contacts, inputs, needs, weight=0.05)
 
 
@@ -80,10 +81,11 @@ def _world(context: Context, inputs: tuple[WorldChoice], path: CameraPath) -> Wo
     return make_world(choice, path)
 
 
-def _contacts(
-    context: Context, inputs: tuple[str, tuple[Contact, ...], WorldChoice], world_: World, track: Any, path: CameraPath
-) -> list[PlacedContact]:
-    from app.stages.worldframe import place_contact
+def _contacts(context: Context, inputs: Any, world_: World, track: Any, path: CameraPath) -> list[PlacedContact]:
+    from app.stages.worldframe import depth_anchors, place_contact
 
-    name, contacts_, choice = inputs
-    return [place_contact(contact, name, track, choice, world_, path) for contact in contacts_]
+    name, marked, choice, anchored = inputs
+    if anchored:
+        return depth_anchors(track, world_)
+    contacts_: tuple[Contact, ...] = marked
+    return [place_contact(contact, name, track, choice, world_) for contact in contacts_]

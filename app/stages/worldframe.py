@@ -54,9 +54,25 @@ def make_world(choice: WorldChoice, path: CameraPath) -> World:
     )
 
 
-def place_contact(
-    contact: Contact, name: str, track: Any, choice: WorldChoice, world: World, path: CameraPath
-) -> PlacedContact:
+def depth_anchors(track: Any, world: World) -> list[PlacedContact]:
+    """Give a track's 3D places under the assumption of constant depth (the paper's salamander, section 4).
+
+    They are contacts of one frame in every other frame: known places of a point that moves on, where a contact of
+    several frames would make it stand still.
+    """
+    from imitation.cameras import constant_depth
+
+    depth = world.depth or ASSUMED_DEPTH
+    ground = constant_depth(depth)
+    anchors = []
+    for frame in range(0, len(track.positions), 2):
+        if np.isfinite(track.positions[frame]).all():
+            place = ground.intersect(world.cameras[frame], track.positions[frame])
+            anchors.append(PlacedContact(frame, frame, place, ground.name, float("nan")))
+    return anchors
+
+
+def place_contact(contact: Contact, name: str, track: Any, choice: WorldChoice, world: World) -> PlacedContact:
     """Put a contact where its point's rays meet the ground (paper A, 3.2); it stands still, so the mean place counts.
 
     Raises ``InputError`` when the track is not there during the contact, or no ray meets a ground.
