@@ -14,6 +14,7 @@ from imitation.cameras.mapping import GUESS, Model
 from imitation.cameras.path import CameraPath, Verdict
 from imitation.cameras.plane import least_squares_plane
 from imitation.cameras.poses import Pose, Sightings, pose_all, triangulate
+from imitation.cameras.reversal import right_way_round
 from imitation.cameras.rotation import turning_bundle
 from imitation.cameras.verdict import FocalKnown
 from imitation.cameras.world import likely_world
@@ -97,7 +98,9 @@ def moving(
     poses, guessed = pose_all(
         model, tracks, centre, rescue=_rescue(clip, features, model), progress=part(progress, 0.0, 0.3)
     )
-    bundle = refined(_bundle(model, poses, tracks, centre), focal is None, part(progress, 0.3, 1.0))
+    bundle = refined(_bundle(model, poses, tracks, centre), focal is None, part(progress, 0.3, 0.9))
+    bundle = right_way_round(bundle, lambda other: refined(other, focal is None), free_focal=focal is None)
+    progress(1.0)
     angles = bundle.angles()
     if not len(angles) or np.median(angles) < NO_ANGLE:
         return failed(clip, focal, "The camera travels too little for the depth of the scene: film with more parallax.")
