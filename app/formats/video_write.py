@@ -15,7 +15,7 @@ from app.formats.source import FrameSource, Picture
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
-# The number of encoder threads changes x264's output, so it is fixed: the same bytes on every machine.
+# The number of encoder threads changes x264's output, so it does not follow the number of cores.
 _THREADS = 4
 _BT709 = 1
 

@@ -1,7 +1,7 @@
 # mypy: disable-error-code="untyped-decorator"
 """A z-buffer rasteriser: which triangle each sample of a picture sees, exactly where the camera model says.
 
-No graphics driver takes part, so pictures are the same bits everywhere. Edge functions are taken in homogeneous
+No graphics driver takes part, so pictures do not depend on one. Edge functions are taken in homogeneous
 coordinates: a triangle that reaches behind the camera needs no clipping.
 """
 
