@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,9 @@ from imitation.errors import InputError
 from imitation.geometry import Camera, kabsch, prepare_mesh, quaternion_of, quaternion_product
 from imitation.geometry.projection import Array
 from imitation.progress import Progress, silent
+
+if TYPE_CHECKING:
+    from imitation.deformation.modes import Modes
 
 MOST = 60
 Method = Literal["detail", "paper"]
@@ -53,6 +56,7 @@ class Deformer:
         self.mesh = prepare_mesh(vertices, faces)
         self.system = System(self.mesh, float(stretch_weight), stiffness)
         self.method = method
+        self._modes: dict[tuple[bytes, ...], Modes] = {}
 
     def solve(
         self,
@@ -95,18 +99,43 @@ class Deformer:
         iterations: int | None = None,
         tolerance: float = 1e-6,
         most: int = MOST,
+        modes: Modes | None = None,
     ) -> Pose:
         """As ``solve``, with the rotations for a warm start, the number of steps and warnings."""
         from imitation.deformation.kernels import relax
+        from imitation.deformation.modes import no_modes
 
         rows = build_rows(self.mesh, asked)
         if not len(rows.handles):
             return self._as_pose(start)
-        inner, turns = self._begin(rows, start)
-        small = self.system.small(rows)
+        first = self.begin(rows, start)
+        if modes is None and iterations is None:
+            modes = self.slow_modes(rows, first[0])
+        given = self.system.arrays, self.system.small(rows).arrays(rows.target)
         limit, within = (most, tolerance) if iterations is None else (int(iterations), 0.0)
-        made, step = relax(inner, turns, self.system.arrays, small.arrays(rows.target), limit, within, 1)
+        plain = no_modes(len(first[0]))
+        inner, turns = first[0].copy(), first[1].copy()
+        made, step = relax(inner, turns, *given, (modes or plain).arrays(), limit, within, 2)
+        if modes is not None and not step <= within:
+            # Far from anything linear the slow directions can mislead: once more without them.
+            other, bent = first
+            again, last = relax(other, bent, *given, plain.arrays(), limit, within, 2)
+            if not step <= last:
+                inner, turns, made, step = other, bent, again, last
         return Pose(self.outward(inner), inner, turns, int(made), float(step), iterations is not None or step <= within)
+
+    def slow_modes(self, rows: Rows, inner: Array) -> Modes:
+        """Slow directions for a set of handles; those of points alone do not depend on the frame and are kept."""
+        from imitation.deformation.modes import slow_modes
+
+        if not rows.pinned.all():
+            return slow_modes(self.system, rows, kabsch(self.system.rest, inner, self.system.area)[0])
+        key = rows.signature
+        if key not in self._modes:
+            if len(self._modes) > 4:
+                self._modes.pop(next(iter(self._modes)))
+            self._modes[key] = slow_modes(self.system, rows, np.eye(3))
+        return self._modes[key]
 
     def solve_sequence(
         self,
@@ -151,10 +180,9 @@ class Deformer:
         iterations: int | None = None,
     ) -> Iterator[Pose]:
         """The frames of ``solve_sequence`` one after the other, with their reports."""
-        previous = start
-        for asked in frames:
-            previous = self.solve_pose(asked, start=previous, iterations=iterations, tolerance=tolerance, most=most)
-            yield previous
+        from imitation.deformation.sequence import run
+
+        return run(self, frames, start, tolerance, most, iterations)
 
     # ---- poses in the solver's order and units
 
@@ -193,7 +221,8 @@ class Deformer:
         fit_turns(inner, turns, start, other, edge, detail, 12)
         return turns
 
-    def _begin(self, rows: Rows, start: ArrayLike | Pose | None) -> tuple[Array, Array]:
+    def begin(self, rows: Rows, start: ArrayLike | Pose | None) -> tuple[Array, Array]:
+        """Pose (m, 3) and rotations (m, 4) to begin with."""
         place = self.system.place[rows.handles]
         if start is None:
             return self._cold(rows, place)

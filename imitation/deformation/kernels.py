@@ -4,6 +4,7 @@ Shapes: m welded vertices in elimination order, e directed edges (compressed row
 All lengths are in diagonals of the rest mesh.
 """
 
+# mypy: disable-error-code="no-untyped-def"
 from __future__ import annotations
 
 import numpy as np
@@ -14,6 +15,10 @@ from imitation.deformation.factor import solve_three
 OPTIONS = {"cache": True, "nogil": True, "boundscheck": False, "error_model": "numpy"}
 WINDOW = 5
 """Anderson's mixing looks back this many steps."""
+FARTHEST = 0.02
+"""No vertex goes farther than this along the slow directions in one step: beyond, they bend."""
+SLOW_FROM = 3
+"""The first step along the slow directions: before, the rotations do not yet follow the handles."""
 RESTART = 4.0
 """It forgets them when the squared step exceeds the smallest so far by this factor."""
 
@@ -198,65 +203,140 @@ def mixing(gram, side, count):
     return b
 
 
+@njit(fastmath={"reassoc", "contract"}, **OPTIONS)
+def correct_slow(pose, new, turn, modes):
+    """Add to the step what is still to come along the slow directions, in place in ``new`` (see ``modes``)."""
+    dual, moved, inverse, reach = modes
+    size, count = len(pose), len(inverse)
+    share = np.zeros(count, np.float32)
+    for i in range(size):
+        a, b, c = np.float32(new[i, 0] - pose[i, 0]), np.float32(new[i, 1] - pose[i, 1]), np.float32(0)
+        c = np.float32(new[i, 2] - pose[i, 2])
+        w, x, y, z = (
+            np.float32(turn[i, 0]),
+            np.float32(-turn[i, 1]),
+            np.float32(-turn[i, 2]),
+            np.float32(-turn[i, 3]),
+        )
+        s, t, u = y * c - z * b + w * a, z * a - x * c + w * b, x * b - y * a + w * c
+        a, b, c = a + 2 * (y * u - z * t), b + 2 * (z * s - x * u), c + 2 * (x * t - y * s)
+        for k in range(count):
+            share[k] += a * dual[i, 0, k] + b * dual[i, 1, k] + c * dual[i, 2, k]
+    wide = inverse @ share.astype(np.float64)
+    far = 0.0
+    for k in range(count):
+        far += abs(wide[k]) * reach[k]
+    share = (wide * min(1.0, FARTHEST / (far + 1e-300))).astype(np.float32)
+    for i in range(size):
+        a, b, c = np.float32(0), np.float32(0), np.float32(0)
+        for k in range(count):
+            a += moved[i, 0, k] * share[k]
+            b += moved[i, 1, k] * share[k]
+            c += moved[i, 2, k] * share[k]
+        w, x, y, z = turn[i, 0], turn[i, 1], turn[i, 2], turn[i, 3]
+        s, t, u = y * c - z * b + w * a, z * a - x * c + w * b, x * b - y * a + w * c
+        new[i, 0] += a + 2 * (y * u - z * t)
+        new[i, 1] += b + 2 * (z * s - x * u)
+        new[i, 2] += c + 2 * (x * t - y * s)
+
+
 @njit(**OPTIONS)
-def relax(pose, turn, mesh, constraints, iterations, tolerance, least):
+def one_step(pose, turn, mesh, constraints):
+    """One local and one global step; the new pose (m, 3)."""
+    start, other, edge, detail, area, total, coupling, ground, shifted = mesh
+    response, handle, owner, row, target, matrix, inverse = constraints
+    spread, new = np.empty_like(pose), np.empty_like(pose)
+    local_step(pose, turn, start, other, edge, detail, spread, new)
+    apply_inverse(ground, shifted, area, total, coupling, spread, new)
+    constrain(new, response, handle, owner, row, target, matrix, inverse)
+    return new
+
+
+@njit(**OPTIONS)
+def mix(pose, new, history, gram, side, weight, state):
+    """Anderson's mixing (type II) of the last steps, in place in ``pose``; state = (count, slot, best, made)."""
+    last_new, last_step, new_change, step_change = history
+    values, steps, before = new.ravel(), last_step.ravel(), last_new.ravel()
+    place = pose.ravel()
+    size = len(place)
+    squared = 0.0
+    for i in range(size):
+        squared += (values[i] - place[i]) ** 2
+    count, slot = int(state[0]), int(state[1])
+    if squared > RESTART * state[2]:
+        count, slot = 0, 0
+        state[2] = squared
+        state[4] += 1
+    else:
+        state[2] = min(state[2], squared)
+        if state[3] > 0:
+            mine, change = step_change[slot], new_change[slot]
+            count = min(count + 1, WINDOW)
+            for i in range(size):
+                change[i] = values[i] - before[i]
+                mine[i] = (values[i] - place[i]) - steps[i]
+            for h in range(count):
+                dot = 0.0
+                theirs = step_change[h]
+                for i in range(size):
+                    dot += mine[i] * theirs[i]
+                gram[slot, h] = dot
+                gram[h, slot] = dot
+            slot = (slot + 1) % WINDOW
+    for h in range(count):
+        dot = 0.0
+        theirs = step_change[h]
+        for i in range(size):
+            dot += theirs[i] * (values[i] - place[i])
+        side[h] = dot
+    weight[:] = 0.0
+    weight[:count] = mixing(gram, side, count)
+    for i in range(size):
+        before[i] = values[i]
+        steps[i] = values[i] - place[i]
+        place[i] = values[i]
+    for h in range(count):
+        share, change = weight[h], new_change[h]
+        for i in range(size):
+            place[i] -= share * change[i]
+    state[0], state[1], state[3] = count, slot, state[3] + 1
+
+
+@njit(**OPTIONS)
+def relax(pose, turn, mesh, constraints, modes, iterations, tolerance, least):
     """Local and global steps until the root mean square step is at most the tolerance; pose and turn are updated.
 
-    Returns the number of steps made and the last root mean square step.
+    Returns the number of steps made and the last root mean square step. Where the slow directions do not help (the
+    mixing had to start again three times) they are left out for the rest.
     """
     start, other, edge, detail, area, total, coupling, ground, shifted = mesh
     response, handle, owner, row, target, matrix, inverse = constraints
     size = len(pose)
     spread, new = np.empty((size, 3)), np.empty((size, 3))
-    last_new, last_step = np.empty((size, 3)), np.empty((size, 3))
-    new_change, step_change = np.empty((WINDOW, size, 3)), np.empty((WINDOW, size, 3))
-    gram, side = np.zeros((WINDOW, WINDOW)), np.zeros(WINDOW)
-    count, slot, best, step, made = 0, 0, np.inf, 0.0, 0
+    history = (
+        np.empty((size, 3)),
+        np.empty((size, 3)),
+        np.empty((WINDOW, size * 3)),
+        np.empty((WINDOW, size * 3)),
+    )
+    gram, side, weight = np.zeros((WINDOW, WINDOW)), np.zeros(WINDOW), np.zeros(WINDOW)
+    state = np.array([0.0, 0.0, np.inf, 0.0, 0.0])
+    slow = len(modes[2]) > 0
+    step, made = 0.0, 0
     for made in range(1, iterations + 1):
         local_step(pose, turn, start, other, edge, detail, spread, new)
         apply_inverse(ground, shifted, area, total, coupling, spread, new)
         constrain(new, response, handle, owner, row, target, matrix, inverse)
+        if slow and made >= SLOW_FROM and state[4] < 3:
+            correct_slow(pose, new, turn, modes)
         squared = 0.0
         for i in range(size):
             for axis in range(3):
-                change = new[i, axis] - pose[i, axis]
-                squared += change * change
+                squared += (new[i, axis] - pose[i, axis]) ** 2
         step = np.sqrt(squared / size)
         if made == iterations or (step <= tolerance and made >= least):
             break
-        if squared > RESTART * best:
-            count, slot, best = 0, 0, squared
-        else:
-            best = min(best, squared)
-            if made > 1:
-                for i in range(size):
-                    for axis in range(3):
-                        new_change[slot, i, axis] = new[i, axis] - last_new[i, axis]
-                        step_change[slot, i, axis] = (new[i, axis] - pose[i, axis]) - last_step[i, axis]
-                count = min(count + 1, WINDOW)
-                for h in range(count):
-                    dot = 0.0
-                    for i in range(size):
-                        for axis in range(3):
-                            dot += step_change[slot, i, axis] * step_change[h, i, axis]
-                    gram[slot, h] = dot
-                    gram[h, slot] = dot
-                slot = (slot + 1) % WINDOW
-        for h in range(count):
-            dot = 0.0
-            for i in range(size):
-                for axis in range(3):
-                    dot += step_change[h, i, axis] * (new[i, axis] - pose[i, axis])
-            side[h] = dot
-        weight = mixing(gram, side, count)
-        for i in range(size):
-            for axis in range(3):
-                last_new[i, axis] = new[i, axis]
-                last_step[i, axis] = new[i, axis] - pose[i, axis]
-                value = new[i, axis]
-                for h in range(count):
-                    value -= weight[h] * new_change[h, i, axis]
-                pose[i, axis] = value
+        mix(pose, new, history, gram, side, weight, state)
     for i in range(size):
         for axis in range(3):
             pose[i, axis] = new[i, axis]

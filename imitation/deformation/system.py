@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from imitation.deformation.constraints import Rows
 from imitation.deformation.factor import elimination_order, factorise, solve_one
@@ -82,6 +82,13 @@ class System:
         solve_one(shifted.start, shifted.row, shifted.value, shifted.inverse, middle)
         return middle - self.area @ middle / self.total
 
+    def apply(self, pose: Array) -> Array:
+        """``Q pose`` for (m, 3) or (m,)."""
+        bent = self.laplacian @ pose
+        scaled = (bent.T / self.area).T + self.coupling * pose
+        result: Array = self.laplacian @ scaled
+        return result
+
     def small(self, rows: Rows) -> SmallSystem:
         """The dense system of one set of rows."""
         return SmallSystem(self, rows)
@@ -128,8 +135,3 @@ def _welded_stiffness(mesh: PreparedMesh, stiffness: ArrayLike) -> Array:
     welded = np.zeros(len(mesh.positions))
     np.maximum.at(welded, mesh.index, given)
     return welded
-
-
-def elimination(mesh_values: Array, order: NDArray[np.int64]) -> Array:
-    """Per-vertex values in elimination order, contiguous."""
-    return np.ascontiguousarray(mesh_values[order])

@@ -1,0 +1,134 @@
+"""The few slow directions in which the iteration creeps, found once for a set of handles and solved exactly.
+
+Near a solution the step ``U -> G b(R(U))`` is linear, with real eigenvalues in [0, 1). All but some twenty lie below
+0.8; those twenty (limbs held by one point, twist) reach 0.99 and make a frame need hundreds of steps. In the frame
+of the local rotations they hardly depend on the pose, so those of the rest pose serve a whole sequence: in every step
+the residual along them is divided by ``1 - eigenvalue`` (a Galerkin coarse correction, deflation).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.deformation.constraints import Rows
+from imitation.deformation.system import SmallSystem, System
+from imitation.geometry.projection import Array
+
+COUNT = 24
+KRYLOV = 80
+SMALL = NDArray[np.float32]
+
+
+@attrs.frozen(eq=False)
+class Modes:
+    """Slow directions in the frame of the local rotations; single precision, for they only steer the iteration.
+
+    Attributes
+    ----------
+    dual : (m, 3, k) covectors that read a residual's share of each direction.
+    moved : (m, 3, k) what one step makes of each direction.
+    inverse : (k, k) inverse of ``dual' (1 - J) direction``.
+    reach : (k,) the farthest any vertex goes along each moved direction.
+    eigenvalues : (k,) descending.
+    """
+
+    dual: SMALL
+    moved: SMALL
+    inverse: Array
+    reach: Array
+    eigenvalues: Array
+
+    def arrays(self) -> tuple[Any, ...]:
+        """What the compiled loops take."""
+        return self.dual, self.moved, self.inverse, self.reach
+
+
+def no_modes(size: int) -> Modes:
+    """No correction at all."""
+    none = np.zeros((size, 3, 0), np.float32)
+    return Modes(none, none, np.zeros((0, 0)), np.zeros(0), np.zeros(0))
+
+
+def slow_modes(system: System, rows: Rows, rotation: Array, count: int = COUNT, krylov: int = KRYLOV) -> Modes:
+    """Slow directions of a set of handles at rest, by an Arnoldi process in the inner product of Q.
+
+    Parameters
+    ----------
+    rows : the constraints of a typical frame. rotation : (3, 3) overall turn of the body in that frame.
+    """
+    rest = system.rest
+    size = len(rest)
+    count = min(count, 3 * size // 4)
+    krylov = min(max(krylov, count + 8), 3 * size - 1)
+    held = attrs.evolve(rows, direction=rows.direction @ rotation)
+    step = _Step(system, SmallSystem(system, held))
+    basis, after, loads = np.empty((krylov, 3 * size)), np.empty((krylov, 3 * size)), np.empty((krylov, 3 * size))
+    vector = step(np.random.default_rng(0).normal(size=(size, 3)))
+    for made in range(krylov):
+        for _ in range(2):
+            vector = vector - (basis[:made].T @ (loads[:made] @ vector.ravel())).reshape(size, 3)
+        load = system.apply(vector)
+        norm = np.sqrt(max(float(np.vdot(vector, load)), 0.0))
+        if norm < 1e-12:
+            basis, after, loads = basis[:made], after[:made], loads[:made]
+            break
+        basis[made], loads[made] = vector.ravel() / norm, load.ravel() / norm
+        vector = step(basis[made].reshape(size, 3))
+        after[made] = vector.ravel()
+    right, left = _invariant(loads @ after.T, count)
+    moved, dual = right.T @ after, left.T @ loads
+    inner = left.T @ (loads @ after.T) @ right
+    inverse = np.linalg.inv(left.T @ right - inner)
+    moved = moved.reshape(-1, size, 3)
+    moved[:, system.place[rows.handles[rows.pinned]]] = 0.0
+    shape = (size, 3, -1)
+    return Modes(
+        np.ascontiguousarray(dual.T.reshape(shape), np.float32),
+        np.ascontiguousarray(moved.transpose(1, 2, 0), np.float32),
+        np.ascontiguousarray(inverse),
+        np.linalg.norm(moved, axis=2).max(axis=1),
+        np.sort(np.linalg.eigvals(inner).real)[::-1],
+    )
+
+
+def _invariant(projected: Array, count: int) -> tuple[Array, Array]:
+    """Right and left bases (k, count) of the eigenspace of a matrix' largest eigenvalues, biorthonormal.
+
+    The matrix is not symmetric, so the left basis differs: read with it, a residual along the fast directions is not
+    mistaken for one along the slow.
+    """
+    from scipy.linalg import schur
+
+    middle = np.sort(np.linalg.eigvals(projected).real)[::-1][count - 1 : count + 1].mean()
+    _, basis, size = schur(projected, sort=lambda real, imaginary: real > middle)
+    _, other, twin = schur(projected.T, sort=lambda real, imaginary: real > middle)
+    right, left = basis[:, :size], other[:, : min(size, twin)]
+    right = right[:, : left.shape[1]]
+    return right, left @ np.linalg.inv(right.T @ left)
+
+
+class _Step:
+    """The derivative of one step at rest."""
+
+    def __init__(self, system: System, small: SmallSystem) -> None:
+        rest = system.rest
+        rows = small.rows
+        target = np.einsum("ri,ri->r", rows.direction, rest[small.handle][rows.owner])
+        self.system, self.constraints = system, small.arrays(target)
+        self.still = self._step(rest)
+
+    def _step(self, pose: Array) -> Array:
+        from imitation.deformation.kernels import one_step
+
+        turn = np.tile([1.0, 0.0, 0.0, 0.0], (len(pose), 1))
+        result: Array = one_step(np.ascontiguousarray(pose), turn, self.system.arrays, self.constraints)
+        return result
+
+    def __call__(self, direction: Array) -> Array:
+        small = 1e-6 / float(np.abs(direction).max())
+        result: Array = (self._step(self.system.rest + small * direction) - self.still) / small
+        return result
