@@ -13,6 +13,8 @@ from resources.performer.motions import PERIODS, TRAVELLING, WHOLE_CIRCLES, moti
 from resources.performer.skeleton import POSE_VALUES, SHOULDER, SWAY, body_capsules, body_joints
 
 Array = NDArray[np.float64]
+LIMBS = ([7, 8, 9], [8, 9], [13, 14, 15], [14, 15], [11, 12], [17, 18])
+"""Capsules that a broken capture may miss: arms, forearms, legs, shanks."""
 
 
 @attrs.frozen
@@ -80,7 +82,7 @@ class Capture:
             waves *= (2 * np.pi / random.uniform(0.12, 0.4, 6) / np.linalg.norm(waves, axis=1))[:, None]
             bumps = np.c_[waves, random.uniform(0, 2 * np.pi, 6), np.full(6, self.bump / np.sqrt(3.0))]
         if self.broken and random.random() < 0.08:
-            limb = random.choice([[7, 8, 9], [8, 9], [13, 14, 15], [14, 15], [11, 12], [17, 18]])
+            limb = LIMBS[int(random.integers(len(LIMBS)))]
             capsules = np.delete(capsules, limb, axis=0)
         if self.broken and random.random() < 0.05:
             middle = joints[0] + random.uniform(-0.6, 0.6, 3)

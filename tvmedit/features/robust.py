@@ -93,7 +93,8 @@ class CylinderHistograms:
         self._held.clear()
 
     def _count(self, vertices: Array, weights: Array, frame: int) -> None:
-        assert self.floor is not None and self.height is not None
+        assert self.floor is not None
+        assert self.height is not None
         x, y = self.centres[frame]
         self._histograms.append(cylinder_histogram(vertices, weights, x, y, self.floor, self.height))
 

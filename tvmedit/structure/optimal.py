@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from imitation.errors import InputError
 from tvmedit.structure.segments import best_period, best_segments, repeat_costs, texton_chain
+from tvmedit.structure.splitting import split_unlike
 from tvmedit.structure.structure import Cluster, Structure, texton_curve
 from tvmedit.structure.warping import SAME_MOTION, texton_difference
 
@@ -55,6 +56,7 @@ def parse_optimal(
     clusters = _clusters(atoms, starts, periods, novelty)
     if boundaries is None:
         clusters = _merged(atoms, clusters, novelty)
+        clusters = [piece for cluster in clusters for piece in split_unlike(atoms, cluster, novelty)]
     clusters = _kinds(atoms, clusters, novelty)
     found = tuple(clusters)
     reason = _reason(found, median, still, fps)
@@ -119,7 +121,7 @@ def _kinds(atoms: NDArray[np.float32], clusters: list[Cluster], novelty: float) 
     numbered: list[Cluster] = []
     for cluster in clusters:
         kind = max((other.kind for other in numbered), default=-1) + 1
-        for other in numbered:
+        for other in numbered[:-1]:
             if texton_difference(atoms, other, cluster, adjacent=False) < SAME_MOTION * novelty:
                 kind = other.kind
                 break

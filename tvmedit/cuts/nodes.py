@@ -1,0 +1,110 @@
+"""Nodes of a deformation graph on a mesh, and which vertex follows which, by distances along the surface."""
+
+from __future__ import annotations
+
+import heapq
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from tvmedit.compiled import compiled
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+FOLLOWED = 4
+"""Nodes a vertex follows."""
+
+
+@attrs.frozen(eq=False)
+class DeformationGraph:
+    """Nodes spread over a mesh.
+
+    Attributes
+    ----------
+    places : (m, 3) float64
+    bound : (v, 4) int64
+        Nodes each vertex follows; repeated with weight 0 where there are fewer.
+    weights : (v, 4) float64
+        Sum to 1.
+    edges : (e, 2) int64
+        Pairs of nodes that some vertex follows together.
+    """
+
+    places: Array
+    bound: Index
+    weights: Array
+    edges: Index
+
+
+def spread_nodes(vertices: Array, faces: NDArray[np.int32], spacing: float) -> DeformationGraph:
+    """Cover a mesh greedily with nodes about one spacing apart along the surface.
+
+    Distances run along edges, never through the air: otherwise a hand beside a hip would follow the hip.
+    """
+    offsets, neighbours, lengths = _adjacency(vertices, faces)
+    chosen, bound, distances = _cover(len(vertices), offsets, neighbours, lengths, spacing)
+    weights = np.exp(-((distances / spacing) ** 2))
+    weights[~np.isfinite(distances)] = 0.0
+    bound = np.where(np.isfinite(distances), bound, bound[:, :1])
+    weights /= weights.sum(axis=1, keepdims=True)
+    pairs = np.concatenate([bound[:, [a, b]] for a in range(FOLLOWED) for b in range(a + 1, FOLLOWED)])
+    pairs = np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0)
+    return DeformationGraph(vertices[chosen], bound, weights, pairs)
+
+
+def _adjacency(vertices: Array, faces: NDArray[np.int32]) -> tuple[Index, Index, Array]:
+    """Neighbours of each vertex with edge lengths, as one row-compressed table."""
+    from scipy.sparse import coo_matrix
+
+    ends = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    ends = np.concatenate([ends, ends[:, ::-1]])
+    count = len(vertices)
+    table = coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(count, count)).tocsr()
+    rows = np.repeat(np.arange(count), np.diff(table.indptr))
+    lengths = np.linalg.norm(vertices[rows] - vertices[table.indices], axis=1)
+    return table.indptr.astype(np.int64), table.indices.astype(np.int64), lengths
+
+
+@compiled
+def _cover(count: int, offsets: Index, neighbours: Index, lengths: Array, spacing: float) -> tuple[Index, Index, Array]:
+    """Nodes (vertex numbers), the four nearest nodes of each vertex, and their distances."""
+    covered = np.zeros(count, np.bool_)
+    chosen = np.empty(count, np.int64)
+    nodes = 0
+    nearest = np.zeros((count, FOLLOWED), np.int64)
+    distances = np.full((count, FOLLOWED), np.inf)
+    reached = np.full(count, np.inf)
+    touched = np.empty(count, np.int64)
+    for vertex in range(count):
+        if covered[vertex]:
+            continue
+        chosen[nodes] = vertex
+        touched[0], tally = vertex, 1
+        reached[vertex] = 0.0
+        queue = [(0.0, vertex)]
+        while len(queue) > 0:
+            far, at = heapq.heappop(queue)
+            if far > reached[at]:
+                continue
+            if far <= spacing:
+                covered[at] = True
+            slot = FOLLOWED
+            while slot > 0 and far < distances[at, slot - 1]:
+                slot -= 1
+            if slot < FOLLOWED:
+                for k in range(FOLLOWED - 1, slot, -1):
+                    distances[at, k], nearest[at, k] = distances[at, k - 1], nearest[at, k - 1]
+                distances[at, slot], nearest[at, slot] = far, nodes
+            for row in range(offsets[at], offsets[at + 1]):
+                further, other = far + lengths[row], neighbours[row]
+                if further < reached[other] and further <= 2.6 * spacing:
+                    if reached[other] == np.inf:
+                        touched[tally] = other
+                        tally += 1
+                    reached[other] = further
+                    heapq.heappush(queue, (further, other))
+        for k in range(tally):
+            reached[touched[k]] = np.inf
+        nodes += 1
+    return chosen[:nodes].copy(), nearest, distances
