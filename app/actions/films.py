@@ -129,20 +129,21 @@ class _Moving:
 def _over_video(
     session: Session, motions: Sequence[_Moving], dim: float, points: bool, frames: range | None = None
 ) -> Iterator[Picture]:
-    from imitation.rendering import Layer, Plane, Renderer, composite, draw_points, ground_shadow
+    from imitation.rendering import Layer, Renderer, composite, draw_points, ground_shadow
 
     world, film = _world(session), session.frames()
-    plane = Plane(world.normal * world.offset, world.normal) if world.grounded else None
+    contacts = _contacts(session)
     renderers = [Renderer(m.faces, film.size, colors=m.colors, samples=2, up=world.normal) for m in motions]
     tracks = [session.ready(session.stages.track(track.id)) for track in session.document.tracks] if points else []
     for frame in frames or range(len(motions[0].vertices)):
         camera, layers = world.cameras[frame], []
+        floor = _floor(world, contacts, frame)
         for moving, renderer in zip(motions, renderers, strict=True):
             pose = np.ascontiguousarray(moving.vertices[frame], np.float64)
             lights = renderer.lights(pose, camera)
             shadow = None
-            if plane is not None:
-                shadow = ground_shadow(pose, lights, camera, renderer.size, plane, renderer.look, renderer.up)
+            if floor is not None:
+                shadow = ground_shadow(pose, lights, camera, renderer.size, floor, renderer.look, renderer.up)
             layers.append(Layer(renderer.draw(pose, camera, lights), shadow))
         back = film[frame]
         if dim:
@@ -155,14 +156,43 @@ def _over_video(
 def _from_side(session: Session, moving: _Moving, vertices: Array, frames: range | None = None) -> Iterator[Picture]:
     from imitation.rendering import Plane, side_view
 
-    world, film = _world(session), session.frames()
+    world, film, contacts = _world(session), session.frames(), _contacts(session)
     plane = Plane(world.normal * world.offset, world.normal) if world.grounded else None
     shown = frames or range(len(vertices))
-    cameras = [world.cameras[frame] for frame in shown]
-    poses = vertices[shown.start : shown.stop]
+    floors = [_floor(world, contacts, frame) for frame in shown]
     return side_view(
-        poses, moving.faces, cameras, film.size, ground=plane, colors=moving.colors, samples=2, up=world.normal
+        vertices[shown.start : shown.stop],
+        moving.faces,
+        [world.cameras[frame] for frame in shown],
+        film.size,
+        ground=plane,
+        footing=None if any(floor is None for floor in floors) else floors,
+        colors=moving.colors,
+        samples=2,
+        up=world.normal,
     )
+
+
+def _contacts(session: Session) -> dict[str, list[tuple[int, int, Array]]]:
+    """Give the placed contacts that are there, by track."""
+    found = {track.id: session.ready(session.stages.contacts(track.id)) for track in session.document.tracks}
+    return {
+        name: [(contact.first, contact.last, contact.place) for contact in placed]
+        for name, placed in found.items()
+        if isinstance(placed, list) and placed
+    }
+
+
+def _floor(world: World, contacts: dict[str, list[tuple[int, int, Array]]], frame: int) -> Any:
+    """Give what takes the shadow in a frame: the steps under the feet, else the ground plane, else nothing."""
+    from imitation.rendering import Plane, footing_at
+
+    if world.depth is not None:
+        return None
+    footing = footing_at(contacts, frame, world.normal)
+    if footing is not None:
+        return footing
+    return Plane(world.normal * world.offset, world.normal) if world.grounded else None
 
 
 def _together(
