@@ -1,0 +1,115 @@
+"""Posing by hand: the vertex is where it was put, the rest follows, undo brings everything back."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.actions import posing
+from app.actions.session import Session
+from app.stages.results import Animation
+from imitation import InputError
+
+pytestmark = [pytest.mark.xdist_group("solved project"), pytest.mark.slow]
+FRAME = 10
+
+
+@pytest.fixture
+def session(solved_project: Path, tmp_path: Path) -> Iterator[Session]:
+    """A session on a copy of the solved project."""
+    copy = tmp_path / "film.motionwright"
+    shutil.copytree(solved_project, copy)
+    opened = Session.open(copy)
+    yield opened
+    opened.close()
+
+
+def animated(session: Session) -> np.ndarray:
+    """The motion of the only character."""
+    result = session.result(session.stages.animation(session.document.characters[0].id))
+    assert isinstance(result, Animation)
+    return result.vertices
+
+
+def free_vertex(session: Session, vertices: np.ndarray) -> int:
+    """A vertex far from all paired ones."""
+    paired = list(session.document.characters[0].pairs.values())
+    away = np.linalg.norm(vertices[0][:, None] - vertices[0][paired], axis=2).min(axis=1)
+    return int(away.argmax())
+
+
+def test_a_moved_vertex_is_where_it_was_put_and_undo_takes_it_back(session: Session) -> None:
+    """In its frame exactly; its neighbours in time move too; undo finds the old bits without solving."""
+    character = session.document.characters[0].id
+    before = animated(session)
+    vertex = free_vertex(session, before)
+    size = np.linalg.norm(np.ptp(before[0], axis=0))
+    place = before[FRAME, vertex] + [0, 0, 0.04 * size]
+    posing.move_vertex(session, character, FRAME, vertex, place)
+    assert session.history.undo_label == f"Move vertex {vertex} of subject, frame {FRAME}"
+    after = animated(session)
+    assert np.abs(after[FRAME, vertex] - place).max() < 1e-6 * size
+    assert np.linalg.norm(after[FRAME + 2, vertex] - before[FRAME + 2, vertex]) > 0.01 * size
+    assert np.array_equal(after[0], before[0])
+    session.undo()
+    assert session.runner.state(session.stages.animation(character)) == "fresh"
+    assert np.array_equal(animated(session), before)
+
+
+def test_deleting_an_edit_is_as_if_it_had_never_been(session: Session) -> None:
+    """Two edits, one deleted: the bits of the other alone."""
+    character = session.document.characters[0].id
+    before = animated(session)
+    vertex = free_vertex(session, before)
+    size = np.linalg.norm(np.ptp(before[0], axis=0))
+    posing.move_vertex(session, character, 5, vertex, before[5, vertex] + [0, 0, 0.03 * size])
+    alone = animated(session)
+    session.apply(posing.poses.set_edit_end(session.document, character, 5, 9))
+    session.undo()
+    posing.move_vertex(session, character, 15, vertex, alone[15, vertex] + [0, 0, 0.03 * size])
+    both = animated(session)
+    assert not np.array_equal(both[15], alone[15])
+    posing.delete_move(session, character, 15, vertex)
+    assert np.array_equal(animated(session), alone)
+
+
+def test_a_muted_move_has_no_effect_and_comes_back(session: Session) -> None:
+    """Muting the only move of a frame gives the base solution, unmuting the edit."""
+    character = session.document.characters[0].id
+    before = animated(session)
+    vertex = free_vertex(session, before)
+    posing.move_vertex(session, character, FRAME, vertex, before[FRAME, vertex] + [0, 0, 0.02])
+    edited = animated(session)
+    posing.mute_move(session, character, FRAME, vertex, True)
+    assert np.array_equal(animated(session), before)
+    posing.mute_move(session, character, FRAME, vertex, False)
+    assert np.allclose(animated(session), edited, atol=1e-6)
+
+
+def test_a_drag_follows_the_mouse_and_commits_what_was_seen(session: Session) -> None:
+    """Each move of a drag gives a mesh with the vertex under the hand; release commits every key point."""
+    character = session.document.characters[0].id
+    before = animated(session)
+    vertex = free_vertex(session, before)
+    drag = posing.PoseDrag(session, character, FRAME)
+    for step in range(1, 4):
+        place = before[FRAME, vertex] + [0, 0, 0.01 * step]
+        mesh = drag.move({vertex: place})
+        assert np.abs(mesh[vertex] - place).max() < 1e-6
+    edit = posing.release(session, drag, [vertex])
+    committed = edit.document.characters[0].edits[FRAME].committed
+    assert set(committed) == {vertex, *session.document.characters[0].pairs.values()}
+
+
+def test_posing_before_animating_says_what_to_do(session: Session) -> None:
+    """A character whose inputs changed has to be animated first."""
+    from app.model.edits import tracks
+
+    track = session.document.tracks[0]
+    session.apply(tracks.set_click(session.document, track.id, 7, (100, 100)))
+    with pytest.raises(InputError, match="animate it, then pose it"):
+        posing.PoseDrag(session, session.document.characters[0].id, FRAME)
