@@ -3,5 +3,6 @@
 from imitation.deformation.constraints import FrameConstraints
 from imitation.deformation.deformer import Deformer
 from imitation.deformation.pose import Pose
+from imitation.deformation.session import DragSession
 
-__all__ = ["Deformer", "FrameConstraints", "Pose"]
+__all__ = ["Deformer", "DragSession", "FrameConstraints", "Pose"]

@@ -53,6 +53,8 @@ class Rows:
     handles : (k,) welded vertices, ascending. owner : (r,) position in ``handles``. direction : (r, 3) unit vectors.
     target : (r,) wanted coordinate along the direction. softness : (r,) in (0, 1], 1 = hard.
     pinned : (k,) whether the handle is a 3D point. place : (k, 3) its target, or NaN for rays.
+    vertex : (k,) the caller's vertex of each handle. origin, axis : (3,) centre and viewing axis of the camera, or
+        NaN without one.
     """
 
     handles: NDArray[np.int64]
@@ -62,6 +64,9 @@ class Rows:
     softness: Array
     pinned: NDArray[np.bool_]
     place: Array
+    vertex: NDArray[np.int64]
+    origin: Array
+    axis: Array
 
     @property
     def signature(self) -> tuple[bytes, bytes, bytes, bytes]:
@@ -69,12 +74,12 @@ class Rows:
         return self.handles.tobytes(), self.owner.tobytes(), self.direction.tobytes(), self.softness.tobytes()
 
 
-def build_rows(mesh: PreparedMesh, asked: FrameConstraints) -> Rows:
+def build_rows(mesh: PreparedMesh, asked: FrameConstraints, hardness: float = 1.0) -> Rows:
     """Check one frame's constraints and turn them into rows.
 
     A point gives three rows along the axes. A ray gives two rows across its direction, so that the residual is the
     distance to the ray in world units and not pixels times depth as in eq. 8; a depth gives one row along the
-    camera's axis.
+    camera's axis. ``hardness`` is the softness of points that are not named.
 
     Raises
     ------
@@ -89,16 +94,24 @@ def build_rows(mesh: PreparedMesh, asked: FrameConstraints) -> Rows:
                 raise InputError(f"A {name} is given for vertex {vertex}, but the mesh has {size} vertices.")
     if asked.rays and asked.camera is None:
         raise InputError("Rays are given without a camera; pass the camera of the frame.")
-    for vertex, value in asked.softness.items():
-        if not 0 < value <= 1:
-            raise InputError(f"The softness of vertex {vertex} must be above 0 and at most 1, but is {value}.")
+    for vertex, soft in asked.softness.items():
+        if not 0 < soft <= 1:
+            raise InputError(f"The softness of vertex {vertex} must be above 0 and at most 1, but is {soft}.")
     if not 0 < asked.depth_softness < 1:
         raise InputError(f"The softness of depths must lie between 0 and 1, but is {asked.depth_softness}.")
     found: dict[int, list[tuple[Array, float, float]]] = {}
     place: dict[int, Array] = {}
     for vertex, value in asked.points.items():
         world = _numbers(value, 3, f"The point of vertex {vertex}")
-        _point(found, place, int(mesh.index[vertex]), vertex, (world - mesh.centre) / mesh.diagonal, asked.softness)
+        _point(
+            found,
+            place,
+            int(mesh.index[vertex]),
+            vertex,
+            (world - mesh.centre) / mesh.diagonal,
+            asked.softness,
+            hardness,
+        )
     for vertex, value in asked.rays.items():
         if int(mesh.index[vertex]) not in place and asked.camera is not None:
             pixel = _numbers(value, 2, f"The ray of vertex {vertex}")
@@ -107,6 +120,8 @@ def build_rows(mesh: PreparedMesh, asked: FrameConstraints) -> Rows:
         if vertex not in asked.rays:
             raise InputError(f"A depth is given for vertex {vertex}, which has no ray in this frame.")
     handles = sorted(found)
+    names = {int(mesh.index[vertex]): vertex for vertex in (*asked.rays, *asked.points)}
+    camera = asked.camera
     rows = [(position, *row) for position, handle in enumerate(handles) for row in found[handle]]
     return Rows(
         handles=np.array(handles, np.int64),
@@ -116,6 +131,9 @@ def build_rows(mesh: PreparedMesh, asked: FrameConstraints) -> Rows:
         softness=np.array([row[3] for row in rows], np.float64),
         pinned=np.array([handle in place for handle in handles], bool),
         place=np.array([place.get(handle, np.full(3, np.nan)) for handle in handles]).reshape(-1, 3),
+        vertex=np.array([names[handle] for handle in handles], np.int64),
+        origin=np.full(3, np.nan) if camera is None else (camera.centre - mesh.centre) / mesh.diagonal,
+        axis=np.full(3, np.nan) if camera is None else camera.R[2],
     )
 
 
@@ -133,10 +151,11 @@ def _point(
     vertex: int,
     wanted: Array,
     softness: Mapping[int, float],
+    hardness: float,
 ) -> None:
-    soft = float(softness.get(vertex, 1.0))
+    soft = float(softness.get(vertex, hardness))
     if handle in place:
-        if np.abs(place[handle] - wanted).max() > 1e-9 and soft == 1 and found[handle][0][2] == 1:
+        if float(np.abs(place[handle] - wanted).max()) > 1e-9 and soft == found[handle][0][2] == hardness:
             raise InputError(
                 f"Vertex {vertex} lies in the same place as another handle at rest, but the two have different "
                 f"targets; give one of them only."
@@ -147,15 +166,20 @@ def _point(
     found[handle] = [(axis, float(axis @ wanted), soft) for axis in np.eye(3)]
 
 
+def _cross(a: Array, b: Array) -> Array:
+    """Cross product of two single vectors; numpy's own takes twenty times as long on them."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+
+
 def _ray(mesh: PreparedMesh, asked: FrameConstraints, vertex: int, pixel: Array) -> list[tuple[Array, float, float]]:
     camera = asked.camera
     assert camera is not None
     across = camera.rays(pixel)
     along = across / np.linalg.norm(across)
-    least = int(np.argmin(np.abs(camera.R @ along)))
-    first = np.cross(along, camera.R[least])
+    first = _cross(along, camera.R[int(np.argmin(np.abs(camera.R @ along)))])
     first /= np.linalg.norm(first)
-    second = np.cross(along, first)
+    second = _cross(along, first)
     origin = (camera.centre - mesh.centre) / mesh.diagonal
     soft = float(asked.softness.get(vertex, RAY_SOFTNESS))
     rows = [(first, float(first @ origin), soft), (second, float(second @ origin), soft)]

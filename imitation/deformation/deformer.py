@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
+import attrs
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from imitation.deformation.constraints import FrameConstraints, Rows, build_rows
 from imitation.deformation.pose import Pose
-from imitation.deformation.start import FAR, first_motion, rigid_fit, warp
+from imitation.deformation.start import FAR, behind, complete, first_motion, rigid_fit, warp
 from imitation.errors import InputError
 from imitation.geometry import Camera, kabsch, prepare_mesh, quaternion_of, quaternion_product
 from imitation.geometry.projection import Array
@@ -18,8 +19,12 @@ from imitation.progress import Progress, silent
 
 if TYPE_CHECKING:
     from imitation.deformation.modes import Modes
+    from imitation.deformation.session import DragSession
 
 MOST = 60
+HARD = 1.0
+PRINTED = 0.999
+"""Softness of points: the printed form has no hard ones, this is its weight lambda (eq. 10)."""
 Method = Literal["detail", "paper"]
 
 
@@ -49,13 +54,20 @@ class Deformer:
         stiffness: ArrayLike | None = None,
         keep_volume: bool = False,
     ) -> None:
+        from imitation.deformation.paper import PaperIteration
         from imitation.deformation.system import System
+        from imitation.deformation.volume import VolumeKeeper
 
         if not (np.isfinite(stretch_weight) and stretch_weight >= 0):
             raise InputError(f"The stretch weight must be zero or more, but is {stretch_weight}.")
         self.mesh = prepare_mesh(vertices, faces)
-        self.system = System(self.mesh, float(stretch_weight), stiffness)
+        if method not in ("detail", "paper"):
+            raise InputError(f"The method of a deformation is 'detail' or 'paper', not '{method}'.")
+        printed = method == "paper"
+        self.system = System(self.mesh, 0.0 if printed else float(stretch_weight), stiffness, printed)
         self.method = method
+        self._paper = PaperIteration(self.system) if printed else None
+        self._volume = VolumeKeeper(self.system) if keep_volume else None
         self._modes: dict[tuple[bytes, ...], Modes] = {}
 
     def solve(
@@ -102,27 +114,49 @@ class Deformer:
         modes: Modes | None = None,
     ) -> Pose:
         """As ``solve``, with the rotations for a warm start, the number of steps and warnings."""
+        rows = build_rows(self.mesh, asked, HARD if self._paper is None else PRINTED)
+        if not len(rows.handles):
+            return self._as_pose(start)
+        return self.solve_rows(rows, self.begin(rows, start), iterations, tolerance, most, modes)
+
+    def solve_rows(
+        self,
+        rows: Rows,
+        first: tuple[Array, Array],
+        iterations: int | None,
+        tolerance: float,
+        most: int,
+        modes: Modes | None,
+    ) -> Pose:
+        """The inner form of ``solve_pose``: rows instead of constraints, pose and rotations to begin with."""
         from imitation.deformation.kernels import relax
         from imitation.deformation.modes import no_modes
 
-        rows = build_rows(self.mesh, asked)
-        if not len(rows.handles):
-            return self._as_pose(start)
-        first = self.begin(rows, start)
-        if modes is None and iterations is None:
-            modes = self.slow_modes(rows, first[0])
+        rows, notes = complete(rows, first[0][self.system.place[rows.handles]])
         given = self.system.arrays, self.system.small(rows).arrays(rows.target)
-        limit, within = (most, tolerance) if iterations is None else (int(iterations), 0.0)
-        plain = no_modes(len(first[0]))
+        limit, within = (most, tolerance) if iterations is None else (max(1, int(iterations)), 0.0)
         inner, turns = first[0].copy(), first[1].copy()
-        made, step = relax(inner, turns, *given, (modes or plain).arrays(), limit, within, 2)
-        if modes is not None and not step <= within:
-            # Far from anything linear the slow directions can mislead: once more without them.
-            other, bent = first
-            again, last = relax(other, bent, *given, plain.arrays(), limit, within, 2)
-            if not step <= last:
-                inner, turns, made, step = other, bent, again, last
-        return Pose(self.outward(inner), inner, turns, int(made), float(step), iterations is not None or step <= within)
+        if self._paper is not None:
+            inner, made, step = self._paper.relax(inner, turns, given[1], limit, within)
+            turns = self._turns(inner, None)
+        else:
+            if modes is None and iterations is None:
+                modes = self.slow_modes(rows, inner)
+            plain = no_modes(len(inner))
+            made, step = relax(inner, turns, *given, (modes or plain).arrays(), limit, within, 2)
+            if modes is not None and not step <= within:
+                # Far from anything linear the slow directions can mislead: once more without them.
+                other, bent = first[0].copy(), first[1].copy()
+                again, last = relax(other, bent, *given, plain.arrays(), limit, within, 2)
+                if not step <= last:
+                    inner, turns, made, step = other, bent, again, last
+        if self._volume is not None:
+            inner = self._volume(inner, given[1])
+        hidden = behind(rows, inner[self.system.place[rows.handles]])
+        if hidden.any():
+            notes = (*notes, f"Vertex {rows.vertex[hidden][0]} came to lie behind the camera; start from another pose.")
+        reached = iterations is not None or bool(step <= within)
+        return Pose(self.outward(inner), inner, turns, int(made), float(step), reached, notes)
 
     def slow_modes(self, rows: Rows, inner: Array) -> Modes:
         """Slow directions for a set of handles; those of points alone do not depend on the frame and are kept."""
@@ -184,6 +218,17 @@ class Deformer:
 
         return run(self, frames, start, tolerance, most, iterations)
 
+    def session(self, asked: FrameConstraints | None = None, start: ArrayLike | Pose | None = None) -> DragSession:
+        """An interactive drag that begins at a pose."""
+        from imitation.deformation.session import DragSession
+
+        return DragSession(self, asked, start)
+
+    def pose_of(self, vertices: ArrayLike) -> Pose:
+        """Rotations found for a pose (n, 3) made elsewhere."""
+        inner = self.inward(vertices)
+        return Pose(np.array(vertices, np.float64), inner, self._turns(inner, None))
+
     # ---- poses in the solver's order and units
 
     def inward(self, vertices: ArrayLike) -> Array:
@@ -206,9 +251,8 @@ class Deformer:
     def _as_pose(self, start: ArrayLike | Pose | None) -> Pose:
         if isinstance(start, Pose):
             return start
-        vertices = self.mesh.vertices if start is None else np.array(start, np.float64)
-        inner = self.inward(vertices)
-        return Pose(vertices, inner, self._turns(inner, None), warnings=("Nothing holds the mesh in this frame.",))
+        pose = self.pose_of(self.mesh.vertices if start is None else start)
+        return attrs.evolve(pose, warnings=("Nothing holds the mesh in this frame; it keeps the pose it had before.",))
 
     def _turns(self, inner: Array, turn: Array | None) -> Array:
         """Rotations (m, 4) that fit a pose, starting from one turn for all."""
@@ -239,7 +283,7 @@ class Deformer:
             turns = np.ascontiguousarray(quaternion_product(quaternion_of(rotation), turns))
         return np.ascontiguousarray(inner), turns
 
-    def _cold(self, rows: Rows, place: Array) -> tuple[Array, Array]:
+    def _cold(self, rows: Rows, place: NDArray[np.int64]) -> tuple[Array, Array]:
         rest = self.system.rest
         handles = rest[place]
         rotation, translation = first_motion(rows, handles)

@@ -7,7 +7,7 @@ the Laplacian are a third of the size of one factor of Q, take a fraction of its
 # mypy: disable-error-code="no-untyped-def"
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal
 
 import attrs
 import numpy as np
@@ -62,11 +62,11 @@ def factorise(matrix: Any) -> Factor:
     )
 
 
-def _split(matrix: Any, order: str) -> Any:
+def _split(matrix: Any, order: Literal["NATURAL", "MMD_AT_PLUS_A"]) -> Any:
     from scipy import sparse
     from scipy.sparse.linalg import splu
 
-    columns = sparse.csc_matrix(matrix)
+    columns: Any = sparse.csc_matrix(matrix)
     columns.sort_indices()
     return splu(columns, permc_spec=order, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 

@@ -143,6 +143,14 @@ def apply_inverse(ground, shifted, area, total, coupling, spread, turned):
         mean /= total
         for i in range(size):
             turned[i, axis] += coupling * area[i] * (spread[i, axis] - mean)
+        if coupling == 0.0:
+            # L alone can only make what sums to zero
+            mean = 0.0
+            for i in range(size):
+                mean += turned[i, axis]
+            mean /= total
+            for i in range(size):
+                turned[i, axis] -= area[i] * mean
     solve_three(shifted[0], shifted[1], shifted[2], shifted[3], turned)
 
 

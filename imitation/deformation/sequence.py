@@ -49,11 +49,13 @@ def run(
         same = rows.handles.tobytes() + rows.owner.tobytes()
         if same != handles:
             modes, handles, age = None, same, 0
-        if modes is None and iterations is None and len(rows.handles):
-            modes = deformer.slow_modes(rows, deformer.begin(rows, begin)[0])
-        pose = deformer.solve_pose(
-            asked, start=begin, iterations=iterations, tolerance=tolerance, most=most, modes=modes
-        )
+        if not len(rows.handles) or deformer.method == "paper":
+            pose = deformer.solve_pose(asked, start=begin, iterations=iterations, tolerance=tolerance, most=most)
+        else:
+            first = deformer.begin(rows, begin)
+            if modes is None and iterations is None:
+                modes = deformer.slow_modes(rows, first[0])
+            pose = deformer.solve_rows(rows, first, iterations, tolerance, most, modes)
         age += 1
         if pose.iterations > MANY and age > PATIENCE:
             modes, age = None, 0

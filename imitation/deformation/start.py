@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from imitation.deformation.constraints import Rows
 from imitation.geometry import axis_rotation, kabsch, rotation_of
@@ -15,7 +17,16 @@ FAR = 0.05
 def residuals(rows: Rows, handles: Array) -> Array:
     """Residual (r,) of every row at handle positions (k, 3), weak rows scaled down."""
     distance = np.einsum("ri,ri->r", rows.direction, handles[rows.owner]) - rows.target
-    return distance * np.sqrt(np.minimum(rows.softness, 1.0))
+    weighted: Array = distance * np.sqrt(rows.softness)
+    return weighted
+
+
+def behind(rows: Rows, handles: Array) -> NDArray[np.bool_]:
+    """Which handles (k,) on rays lie behind the camera at positions (k, 3)."""
+    if rows.pinned.all():
+        return np.zeros(len(rows.handles), bool)
+    hidden: NDArray[np.bool_] = ((handles - rows.origin) @ rows.axis <= 0) & ~rows.pinned
+    return hidden
 
 
 def rigid_fit(rows: Rows, handles: Array, rotation: Array, translation: Array) -> tuple[Array, Array, float]:
@@ -60,9 +71,11 @@ def first_motion(rows: Rows, handles: Array) -> tuple[Array, Array]:
         starts.insert(0, kabsch(handles[rows.pinned], rows.place[rows.pinned])[0])
     best: tuple[float, Array, Array] | None = None
     for rotation in starts:
-        fitted = rigid_fit(rows, handles, rotation, _shift(rows, handles @ rotation.T))
-        if best is None or fitted[2] < 0.8 * best[0] - 1e-12:
-            best = fitted[2], fitted[0], fitted[1]
+        turned, moved, cost = rigid_fit(rows, handles, rotation, _shift(rows, handles @ rotation.T))
+        if behind(rows, handles @ turned.T + moved).any():
+            cost = np.inf  # a mirrored body behind the camera has the same picture
+        if best is None or cost < 0.8 * best[0] - 1e-12:
+            best = cost, turned, moved
     assert best is not None
     return best[1], best[2]
 
@@ -71,8 +84,8 @@ def _shift(rows: Rows, handles: Array) -> Array:
     """Translation (3,) that fits the rows best, the shortest one where some direction is free."""
     weight = np.sqrt(rows.softness)
     wanted = -residuals(rows, handles)
-    shift: Array = np.linalg.lstsq(rows.direction * weight[:, None], wanted, rcond=1e-6)[0]
-    return shift
+    shift = np.linalg.lstsq(rows.direction * weight[:, None], wanted, rcond=1e-6)[0]
+    return np.asarray(shift, np.float64)
 
 
 def warp(rest: Array, handles: Array, targets: Array) -> Array | None:
@@ -99,3 +112,28 @@ def warp(rest: Array, handles: Array, targets: Array) -> Array | None:
         away = rest - handle
         result += (np.einsum("ij,ij->i", away, away) ** 1.5)[:, None] * weight
     return result if np.isfinite(result).all() else None
+
+
+def complete(rows: Rows, handles: Array) -> tuple[Rows, tuple[str, ...]]:
+    """Rows that leave no place of the mesh open, with one sentence on everything that the given ones leave open.
+
+    A direction in which nothing holds the mesh (a lone ray, parallel rays) gets a weak row that keeps the first handle
+    where it begins; an open turn is left to the rotations of the start, which the iteration keeps.
+    """
+    notes = []
+    values, axes = np.linalg.eigh(rows.direction.T @ rows.direction)
+    arm = (handles - handles.mean(axis=0)) / max(float(np.abs(handles - handles.mean(axis=0)).max()), 1e-12)
+    slope = np.concatenate([np.cross(arm[rows.owner], rows.direction), rows.direction], axis=1)
+    if np.linalg.matrix_rank(slope, tol=1e-6 * len(slope) ** 0.5) < 6:
+        notes.append("The constraints leave the turn or the place of the mesh open; it keeps what it had before.")
+    free = axes.T[values < 1e-9 * values[-1]]
+    if len(free):
+        notes.append("The rays are parallel, so nothing says how far away the mesh is; it keeps its distance.")
+        rows = attrs.evolve(
+            rows,
+            owner=np.concatenate([rows.owner, np.zeros(len(free), np.int64)]),
+            direction=np.concatenate([rows.direction, free]),
+            target=np.concatenate([rows.target, free @ handles[0]]),
+            softness=np.concatenate([rows.softness, np.full(len(free), 0.01)]),
+        )
+    return rows, tuple(notes)

@@ -13,9 +13,6 @@ from imitation.errors import InputError
 from imitation.geometry import PreparedMesh
 from imitation.geometry.projection import Array
 
-WEAK = 100.0
-"""Compliance, in typical responses, of what only keeps the system solvable."""
-
 
 class System:
     """Matrix ``Q = L M^-1 (L + c M)``, c = a / S, of a prepared mesh, factored once.
@@ -24,12 +21,17 @@ class System:
     ----------
     order : (m,) welded vertex at each place of the elimination order. place : (m,) the other way round.
     rest : (m, 3) rest positions in elimination order. arrays : what the compiled loops take.
+    ``even`` gives all vertices the same area, as the printed form has it.
     """
 
-    def __init__(self, mesh: PreparedMesh, stretch_weight: float, stiffness: ArrayLike | None = None) -> None:
+    def __init__(
+        self, mesh: PreparedMesh, stretch_weight: float, stiffness: ArrayLike | None = None, even: bool = False
+    ) -> None:
         from scipy import sparse
 
         areas, weights = mesh.areas, mesh.weights
+        if even:
+            areas = np.full_like(areas, areas.mean())
         coupling = stretch_weight / float(areas.sum())
         if stiffness is not None:
             stiff = _welded_stiffness(mesh, stiffness)

@@ -35,7 +35,8 @@ def vertex_normals(vertices: ArrayLike, faces: ArrayLike) -> Array:
         [np.bincount(triangles.ravel(), np.repeat(across[:, axis], 3), len(points)) for axis in range(3)], axis=1
     )
     length = np.linalg.norm(total, axis=1, keepdims=True)
-    return np.divide(total, length, out=np.zeros_like(total), where=length > 0)
+    normals: Array = np.divide(total, length, out=np.zeros_like(total), where=length > 0)
+    return normals
 
 
 def edge_stretch(rest: ArrayLike, posed: ArrayLike, faces: ArrayLike) -> Array:
@@ -49,7 +50,8 @@ def edge_stretch(rest: ArrayLike, posed: ArrayLike, faces: ArrayLike) -> Array:
         for place in (np.asarray(rest, np.float64), np.asarray(posed, np.float64))
     )
     unknown = np.where(after > 0, np.inf, 1.0)
-    return np.divide(after, before, out=unknown, where=before > 0)
+    stretch: Array = np.divide(after, before, out=unknown, where=before > 0)
+    return stretch
 
 
 def mesh_volume(vertices: ArrayLike, faces: ArrayLike) -> float:

@@ -168,8 +168,9 @@ def _tie(positions: Array, weights: Any) -> tuple[Any, int]:
     while not tied.all():
         there, loose = np.flatnonzero(tied), np.flatnonzero(~tied)
         links = min(TIES, len(there))
-        distance, nearest = cKDTree(positions[there]).query(positions[loose], k=links)
-        distance, nearest = distance.reshape(len(loose), links), nearest.reshape(len(loose), links)
+        found = cKDTree(positions[there]).query(positions[loose], k=links)
+        distance = np.asarray(found[0], np.float64).reshape(len(loose), links)
+        nearest = np.asarray(found[1], np.int64).reshape(len(loose), links)
         gap = np.full(parts, np.inf)
         np.minimum.at(gap, labels[loose], distance[:, 0])
         rounds += 1
