@@ -67,12 +67,13 @@ def apply_marks(session: Session, path: Path, *, copy: bool = False) -> None:
     if not isinstance(body, dict):
         raise InputError(f"{path} holds no marks: an object with lassos, tracks or characters was expected.")
     try:
-        _apply(session, body, path.parent, copy)
+        apply_values(session, body, path.parent, copy=copy)
     except (KeyError, TypeError, AttributeError) as error:
         raise InputError(f"{path} is not as docs/formats.md says ({type(error).__name__}: {error}).") from error
 
 
-def _apply(session: Session, body: Mapping[str, Any], folder: Path, copy: bool) -> None:
+def apply_values(session: Session, body: Mapping[str, Any], folder: Path, *, copy: bool = False) -> None:
+    """Take marks that were read already; paths are relative to ``folder``."""
     for frame, lassos in body.get("lassos", {}).items():
         for lasso in lassos:
             points = lasso["points"] if isinstance(lasso, Mapping) else lasso

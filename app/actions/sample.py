@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from app.actions import bringing
-from app.actions.marks import apply_marks
+from app.actions.marks import apply_values
 from app.actions.session import Session
 from imitation.errors import InputError
 
@@ -25,5 +27,21 @@ def sample_folder() -> Path:
 def fill_with_sample(session: Session, *, copy: bool = False) -> None:
     """Put the sample's clip, marks and characters into a new project, as a user would have made them."""
     folder = sample_folder()
-    bringing.add_clip(session, folder / "clip.mp4", copy=copy)
-    apply_marks(session, folder / "sample.json", copy=copy)
+    made: dict[str, Any] = json.loads((folder / "sample.json").read_text())
+    bringing.add_clip(session, folder / made["clip"], copy=copy)
+    apply_values(session, _marks(made), folder, copy=copy)
+
+
+def _marks(made: dict[str, Any]) -> dict[str, Any]:
+    """Turn what the maker of the sample wrote into the form of a file of marks (docs/formats.md)."""
+    return {
+        "lassos": {frame: [outline] for frame, outline in made["lassos"].items()},
+        "tracks": {
+            name: {"clicks": clicks, "contacts": made["contacts"].get(name, [])}
+            for name, clicks in made["clicks"].items()
+        },
+        "characters": {
+            name: {"mesh": character["file"], "up": "z", "pairs": character["pairs"]}
+            for name, character in made["characters"].items()
+        },
+    }
