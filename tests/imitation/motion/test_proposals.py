@@ -15,7 +15,7 @@ from resources.world import make_body, make_camera, walk
 @pytest.mark.parametrize("style", ["handheld", "static"])
 def test_contacts_of_a_walk_are_proposed(style: str) -> None:
     """Most planted frames are proposed and few others, for a shaking and for a still camera."""
-    body = make_body("quadruped", vertices=450)
+    body = make_body("quadruped", vertices=900)
     made = walk(body, 61, "flat", seed=3)
     cameras = make_camera(made.centre, body.diagonal, azimuth=70, seed=3, style=style)
     depth = float(cameras[0].depth(made.centre[0]))
@@ -36,7 +36,7 @@ def test_contacts_of_a_walk_are_proposed(style: str) -> None:
 
 def test_a_track_that_always_moves_has_no_contact() -> None:
     """The nose of a walker never stands still for long."""
-    body = make_body("quadruped", vertices=450)
+    body = make_body("quadruped", vertices=900)
     made = walk(body, 41, "flat", seed=3)
     cameras = make_camera(made.centre, body.diagonal, azimuth=90, seed=3)
     track = np.stack([cameras[t].project(made.key_points["nose"][t]) for t in range(41)])
@@ -45,7 +45,7 @@ def test_a_track_that_always_moves_has_no_contact() -> None:
 
 def test_gaps_end_a_contact() -> None:
     """A frame without a position is in no contact."""
-    body = make_body("quadruped", vertices=450)
+    body = make_body("quadruped", vertices=900)
     cameras = make_camera(np.zeros((20, 3)), body.diagonal, seed=1)
     track = np.stack([cameras[t].project(np.zeros(3)) for t in range(20)])
     track[9] = np.nan

@@ -47,7 +47,7 @@ class Walker:
         return float(100 * distance.mean() / np.linalg.norm(np.ptp(self.rest, axis=0)))
 
 
-def film(kind: str, frames: int, terrain: str, azimuth: float, *, seed: int, vertices: int = 450, noise: float = 0.0):
+def film(kind: str, frames: int, terrain: str, azimuth: float, *, seed: int, vertices: int = 900, noise: float = 0.0):
     """A walk of a small body and its tracks in a handheld camera."""
     body = make_body(kind, vertices=vertices)
     made = walk(body, frames, terrain, seed=seed)

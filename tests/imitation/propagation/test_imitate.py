@@ -84,7 +84,7 @@ def test_report_counts(walker: Walker, base: Base) -> None:
 
 def test_one_clip_drives_several_characters(walker: Walker) -> None:
     """The same tracks move a larger character of other density that was aligned elsewhere."""
-    other = film("quadruped", 31, "stairs", 50.0, seed=4, vertices=300)
+    other = film("quadruped", 31, "stairs", 50.0, seed=4, vertices=1200)
     rest = other.rest * 1.1 - 0.1 * other.rest.mean(axis=0)
     _, _, cameras, tracks, _, contacts = walker.arguments
     result = imitate(rest, other.faces, cameras, tracks, other.pairs, contacts)
@@ -96,7 +96,7 @@ def test_one_clip_drives_several_characters(walker: Walker) -> None:
 
 def test_ambiguous_limbs_are_flagged_and_nothing_moves(walker: Walker) -> None:
     """A biped seen from in front has limbs that can be mirrored; flags name frames, and the solution stays."""
-    biped = film("biped", 31, "flat", 25.0, seed=4, vertices=400)
+    biped = film("biped", 31, "flat", 25.0, seed=4, vertices=900)
     base = solve_base(*biped.arguments, deformer=biped.deformer)
     before = base.vertices.copy()
     spans = ambiguous_spans(base)
