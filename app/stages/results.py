@@ -80,6 +80,7 @@ class PlacedContact:
     ----------
     first, last : frames, both included. place : (3,) world. ground : how it was found.
     residual : distance of the ground's points from the fitted ground, world units, NaN where there is none.
+    support : share of the recovered points nearby that speak for the ground; 1 where it does not rest on points.
     """
 
     first: int
@@ -87,6 +88,7 @@ class PlacedContact:
     place: Array
     ground: str
     residual: float
+    support: float = 1.0
 
 
 @attrs.frozen(eq=False)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.model.document import Document
-from app.model.tracks import Contact, Track
+from app.model.tracks import Track
 from app.model.values import Clip
 from app.model.world import CameraChoice, WorldChoice
 from app.stages import tracking
@@ -34,12 +34,26 @@ def world(document: Document) -> Stage:
     return Stage("world", "Finding the ground", _world, (document.world,), needs, weight=0.2)
 
 
+def placed(document: Document) -> Stage:
+    """The contacts of all tracks with their places, in the world: a weakly supported one is judged by the others."""
+    marked = [track for track in document.tracks if track.contacts or _anchored(document, track)]
+    needs = (world(document), *(tracking.track(document, track) for track in marked))
+    inputs = (
+        document.world,
+        tuple((track.id, track.name, track.contacts, _anchored(document, track)) for track in marked),
+    )
+    return Stage("contacts", "Placing contacts", _placed, inputs, needs, weight=0.2)
+
+
 def contacts(document: Document, track: Track) -> Stage:
     """The contacts of a track with their places, in the world."""
-    needs = (world(document), tracking.track(document, track), cameras(document))
-    anchored = document.world.ground == "depth" and document.world.depth_track == track.id
-    inputs = (track.name, track.contacts, document.world, anchored)
-    return Stage(f"contacts/{track.id}", f"Placing contacts of {track.name}", _contacts, inputs, needs, weight=0.05)
+    label = f"Placing contacts of {track.name}"
+    needs = (placed(document),) if track.contacts or _anchored(document, track) else ()
+    return Stage(f"contacts/{track.id}", label, _contacts, (track.id,), needs, weight=0.01, stored=False)
+
+
+def _anchored(document: Document, track: Track) -> bool:
+    return document.world.ground == "depth" and document.world.depth_track == track.id
 
 
 def _cameras(context: Context, inputs: tuple[Clip, CameraChoice], masks: Masks | None = None) -> CameraPath:
@@ -81,11 +95,18 @@ def _world(context: Context, inputs: tuple[WorldChoice], path: CameraPath) -> Wo
     return make_world(choice, path)
 
 
-def _contacts(context: Context, inputs: Any, world_: World, track: Any, path: CameraPath) -> list[PlacedContact]:
-    from app.stages.worldframe import depth_anchors, place_contact
+def _placed(context: Context, inputs: Any, world_: World, *tracks: Any) -> dict[str, list[PlacedContact]]:
+    from app.stages.worldframe import agreed, depth_anchors, place_contact
 
-    name, marked, choice, anchored = inputs
-    if anchored:
-        return depth_anchors(track, world_)
-    contacts_: tuple[Contact, ...] = marked
-    return [place_contact(contact, name, track, choice, world_) for contact in contacts_]
+    choice, marked = inputs
+    found: dict[str, list[PlacedContact]] = {}
+    for (track_id, name, contacts_, anchored), track in zip(marked, tracks, strict=True):
+        if anchored:
+            found[track_id] = depth_anchors(track, world_)
+        else:
+            found[track_id] = [place_contact(contact, name, track, choice, world_) for contact in contacts_]
+    return agreed(found, {entry[0]: track for entry, track in zip(marked, tracks, strict=True)}, world_)
+
+
+def _contacts(context: Context, inputs: tuple[str], found: dict[str, list[PlacedContact]] | None = None) -> Any:
+    return [] if found is None else found[inputs[0]]

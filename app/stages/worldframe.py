@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import attrs
@@ -14,6 +15,10 @@ from imitation import CameraPath
 from imitation.errors import InputError, NoSolution
 
 ASSUMED_DEPTH = 5.0
+FIRM = 0.3
+"""A local ground that fewer of the points nearby speak for is not believed against the other contacts."""
+APART = 0.12
+"""How far, of its depth, a foot may be from the others before it is taken for misplaced."""
 
 
 def make_world(choice: WorldChoice, path: CameraPath) -> World:
@@ -86,8 +91,10 @@ def place_contact(contact: Contact, name: str, track: Any, choice: WorldChoice, 
             f"{name} is not in the picture in frames {first}-{last}, where it is said to touch the ground: "
             "move the contact or click the point there."
         )
-    middle = frames[len(frames) // 2]
-    ground = _ground(choice, world, middle, track.positions[middle], name)
+    # The foot may hide the ground in one frame and show it in another: the best supported of some frames counts.
+    tried = sorted({frames[round(share * (len(frames) - 1))] for share in (0.0, 0.25, 0.5, 0.75, 1.0)})
+    grounds = [_ground(choice, world, frame, track.positions[frame], name) for frame in tried]
+    ground = max(grounds, key=_support)
     places = []
     for frame in frames:
         try:
@@ -99,7 +106,46 @@ def place_contact(contact: Contact, name: str, track: Any, choice: WorldChoice, 
             f"{name} does not meet the ground in frames {first}-{last} ({ground.name}): "
             "choose another ground, or say where it touches."
         )
-    return PlacedContact(first, last, np.median(np.array(places), axis=0), ground.name, float(ground.residual))
+    place = np.median(np.array(places), axis=0)
+    return PlacedContact(first, last, place, ground.name, float(ground.residual), _support(ground))
+
+
+def agreed(
+    found: dict[str, list[PlacedContact]], tracks: Mapping[str, Any], world: World
+) -> dict[str, list[PlacedContact]]:
+    """Put weakly supported contacts that disagree with all others where the others say the subject is.
+
+    The feet of one subject stand within a body's length of each other. A contact on few points whose depth is far from
+    the depths of the contacts around it in time was taken from something behind or before the subject; it goes to their
+    depth on its own ray.
+    """
+    contacts = [(name, contact) for name, each in found.items() for contact in each]
+    firm = [contact for _, contact in contacts if contact.support >= FIRM]
+    if world.depth is not None or len(firm) < 3:
+        return found
+    times = np.array([(contact.first + contact.last) / 2 for contact in firm])
+    depths = np.array([float(world.cameras[int(t)].depth(c.place)) for t, c in zip(times, firm, strict=True)])
+    mended: dict[str, list[PlacedContact]] = {name: [] for name in found}
+    for name, contact in contacts:
+        middle = (contact.first + contact.last) // 2
+        near = np.argsort(np.abs(times - middle), kind="stable")[:4]
+        expected = float(np.median(depths[near]))
+        own = float(world.cameras[middle].depth(contact.place))
+        if contact.support < FIRM and abs(own - expected) > APART * expected:
+            pixel = tracks[name].positions[middle]
+            place = world.cameras[middle].lift(pixel, np.array(expected))
+            reason = f"the depth of the other feet, for {contact.ground} disagrees with them"
+            contact = PlacedContact(contact.first, contact.last, place, reason, float("nan"), contact.support)
+        mended[name].append(contact)
+    return mended
+
+
+def _support(ground: Any) -> float:
+    """Share of the points nearby that speak for a local fit; 1 for a ground that does not rest on points nearby."""
+    plane = ground.plane
+    if plane is None or not ground.name.startswith(("level local", "tilted local")) or not len(plane.used):
+        return 1.0
+    return float(plane.used.mean())
 
 
 def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
