@@ -91,6 +91,9 @@ def place_contact(contact: Contact, name: str, track: Any, choice: WorldChoice, 
             f"{name} is not in the picture in frames {first}-{last}, where it is said to touch the ground: "
             "move the contact or click the point there."
         )
+    # It stands still, so the frames in which the track is sure of it say where; near a click it is surest.
+    sure = 0.7 * max(track.confidence[t] for t in frames)
+    frames = [t for t in frames if track.confidence[t] >= sure]
     # The foot may hide the ground in one frame and show it in another: the best supported of some frames counts.
     tried = sorted({frames[round(share * (len(frames) - 1))] for share in (0.0, 0.25, 0.5, 0.75, 1.0)})
     grounds = [_ground(choice, world, frame, track.positions[frame], name) for frame in tried]
