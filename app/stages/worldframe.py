@@ -15,7 +15,7 @@ from imitation import CameraPath
 from imitation.errors import InputError, NoSolution
 
 ASSUMED_DEPTH = 5.0
-FIRM = 0.3
+FIRM = 0.5
 """A local ground that fewer of the points nearby speak for is not believed against the other contacts."""
 APART = 0.12
 """How far, of its depth, a foot may be from the others before it is taken for misplaced."""
