@@ -20,7 +20,8 @@ class Motion:
 
     streamed : frame -> vertices that came in for the stage ``key`` while it is computed.
     last : the newest whole result, shown where nothing newer is known.
-    held : frame -> the pose that was just released there, until the result says otherwise.
+    held : frame -> the pose that is dragged or was just released there, until the result says otherwise.
+    placed : the character on the subject in the first frame. taken : whether ``last`` is the result wanted now.
     """
 
     character_id: str = ""
@@ -29,21 +30,22 @@ class Motion:
     last: Array | None = None
     held: dict[int, Array] = field(default_factory=dict)
     placed: Any = None
+    taken: bool = False
 
     def read(self, project: Project) -> None:
         """Take what is finished."""
         if project.character_id != self.character_id:
-            self.character_id, self.key = project.character_id, ""
+            self.character_id, self.key, self.taken = project.character_id, "", False
             self.streamed, self.held, self.last, self.placed = {}, {}, None, None
         if not self.character_id:
             return
         stages = project.session.stages
         stage = stages.animation(self.character_id)
         if stage.key != self.key:
-            self.key, self.streamed = stage.key, {}
-        found = project.result(stage)
+            self.key, self.streamed, self.taken = stage.key, {}, False
+        found = None if self.taken else project.result(stage)
         if found is not None:
-            self.last, self.streamed, self.held = found.vertices, {}, {}
+            self.last, self.streamed, self.held, self.taken = found.vertices, {}, {}, True
         placed = project.result(stages.alignment(self.character_id))
         if placed is not None:
             self.placed = placed
