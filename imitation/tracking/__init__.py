@@ -7,6 +7,7 @@ from imitation.tracking.outlines import Outline, fill_outlines
 from imitation.tracking.paper import PaperOptions
 from imitation.tracking.point import track_point, track_span
 from imitation.tracking.robust import RobustOptions
+from imitation.tracking.suggest import rank_tracks, suggest_correction
 from imitation.tracking.track import Span, SpanPlan, Track, assemble_track, plan_spans
 
 __all__ = [
@@ -24,6 +25,8 @@ __all__ = [
     "fill_outlines",
     "plan_spans",
     "prepare_clip",
+    "rank_tracks",
+    "suggest_correction",
     "track_point",
     "track_span",
 ]

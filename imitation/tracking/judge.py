@@ -10,9 +10,6 @@ from imitation.tracking.track import Span, SpanPlan, States
 # Share of frames within 8 px of a person's click by the motion cost of their span, measured on real clips.
 COST_KNOTS = (2.0, 15.0, 70.0, 250.0)
 SHARE_KNOTS = (0.93, 0.78, 0.48, 0.35)
-# Below this correlation with both clicks, and above this miss of the flow there and back, the point is hidden.
-HIDDEN_MATCH = 0.4
-HIDDEN_GAP = 3.0
 
 
 def judge(plan: SpanPlan, chain: Chain, size: tuple[int, int], robust: bool) -> Span:
@@ -28,7 +25,8 @@ def judge(plan: SpanPlan, chain: Chain, size: tuple[int, int], robust: bool) -> 
     closed = plan.left is not None and plan.right is not None
     confidence = _confidence(chain, closed) if robust else np.full(frames, 0.5)
     if robust:
-        state[(chain.match < HIDDEN_MATCH) & (_around(chain.gap) > HIDDEN_GAP)] = "occluded"
+        state[chain.hidden] = "occluded"
+        confidence[chain.hidden] *= 0.5
     if closed:
         state[out] = "outside"
     elif out.any():
@@ -40,12 +38,6 @@ def judge(plan: SpanPlan, chain: Chain, size: tuple[int, int], robust: bool) -> 
     steps = chain.steps
     cost = np.concatenate([[0.0], steps[1:][::-1]]) if backwards else steps.copy()
     return Span(plan, positions[turn].copy(), confidence[turn].copy(), state[turn].copy(), cost)
-
-
-def _around(gap: Array) -> Array:
-    """Greater of the miss of the step into a frame and of the step out of it."""
-    around: Array = np.maximum(gap, np.append(gap[1:], 0.0))
-    return around
 
 
 def _confidence(chain: Chain, closed: bool) -> Array:

@@ -161,4 +161,4 @@ def solve_paper(
             steps[first + 1 : first + len(block)] = np.diff(total)
     steps[0] = 0
     nothing = np.full(frames, np.nan)
-    return Chain(positions, steps, nothing, nothing, nothing)
+    return Chain(positions, steps, nothing, nothing, nothing, np.zeros(frames, bool))

@@ -9,8 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from imitation.progress import Progress, part
-from imitation.tracking.chain import Array, Chain, Place
+from imitation.tracking.chain import Array, Chain, Place, hidden_frames
 from imitation.tracking.clip import PreparedClip
+
+KIN_WINDOW = 15  # small, so that little of the background is in it
+BESIDE = 8  # frames beside hidden ones that may have been dragged along
 
 
 @attrs.frozen
@@ -24,6 +27,8 @@ class RobustOptions:
     look_alikes : peaks of window correlation taken per template and search centre; 0 leaves the search out.
     reach : greatest radius of that search, pixels; it is 10 + 3 * (frames to the nearer click) below.
     local_window : side of the window of local motion, pixels (odd).
+    settle : how far a point beside hidden frames is drawn to a place that looks like the clicks; 0 leaves that out.
+    likeness : least correlation with a click for that.
     """
 
     window: int = 31
@@ -31,6 +36,8 @@ class RobustOptions:
     look_alikes: int = 5
     reach: float = 50.0
     local_window: int = 21
+    settle: float = 6.0
+    likeness: float = 0.8
 
 
 def _follow_local(clip: PreparedClip, order: Sequence[int], start: Place, half: int, report: Progress) -> Array:
@@ -119,7 +126,7 @@ def solve_robust(
     chain of least cost: appearance against both clicks, and disagreement of each step with the flow both ways.
     """
     from imitation.tracking.kernels import HALF_TO_FLOAT
-    from imitation.tracking.robust_kernels import cheapest_chain, describe, flows_at, search
+    from imitation.tracking.robust_kernels import cheapest_chain, describe, flows_at, kinship, search
 
     half = options.window // 2
     paths, centres = _guesses(clip, order, start, stop, options.local_window // 2, part(progress, 0.0, 0.4))
@@ -164,7 +171,50 @@ def solve_robust(
     gap_of = np.zeros(frames)
     gap_of[1:] = np.hypot(*(ahead[rows[:-1], chain[:-1]] + turned[1:]).T)
     match = np.maximum(chosen[:, 1], chosen[:, 2])
-    return Chain(positions, steps, match, gap_of, margin)
+    kin = np.ones(frames)
+    for i in range(1, frames):
+        pictures = clip.colours(order[i - 1])[0], clip.colours(order[i])[0]
+        kin[i] = kinship(pictures[0], *positions[i - 1], pictures[1], *positions[i], KIN_WINDOW // 2)
+    hidden = hidden_frames(match, kin)
+    if options.settle > 0 and hidden.any():
+        _settle(clip, order, positions, match, hidden, looks, stop is not None, options)
+    return Chain(positions, steps, match, gap_of, margin, hidden)
+
+
+def _settle(
+    clip: PreparedClip,
+    order: Sequence[int],
+    positions: Array,
+    match: Array,
+    hidden: NDArray[np.bool_],
+    looks: _Appearance,
+    closed: bool,
+    options: RobustOptions,
+) -> None:
+    """Draw the path beside hidden frames onto places that look like the clicks; frames between two such move along.
+
+    What passes in front drags the flow beside it, and with it the path.
+    """
+    from imitation.tracking.robust_kernels import settle
+
+    frames = len(order)
+    shift = np.zeros((frames, 2))
+    near = np.zeros(frames, bool)
+    for at in np.flatnonzero(hidden):
+        near[max(at - BESIDE, 0) : at + BESIDE + 1] = True
+    sure = ~near
+    for i in np.flatnonzero(near[: -1 if closed else frames]).tolist():
+        weight = (frames - 1 - i) / (frames - 1) if closed else 1.0
+        x, y, found = settle(
+            clip.colours(order[i])[0], *positions[i], looks.fine, looks.norms, weight, options.settle, options.likeness
+        )  # fmt: skip
+        if found >= options.likeness:
+            shift[i], sure[i], match[i] = positions[i] - (x, y), True, found
+    sure[0], sure[-1] = True, sure[-1] or closed
+    shift[0] = 0
+    rows = np.flatnonzero(sure)
+    for axis in (0, 1):
+        positions[:, axis] -= np.interp(np.arange(frames), rows, shift[rows, axis])
 
 
 def _local_flows(

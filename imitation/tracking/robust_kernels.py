@@ -75,6 +75,61 @@ def describe(image, places, count, templates, norms, weight, mask, out):
 
 
 @njit(cache=True, nogil=True)
+def _likeness(image, x, y, templates, norms, weight, window, totals):
+    """Blended correlation with both templates at a place, and the greater of the two."""
+    last = templates.shape[0] - 1
+    read_colours(image, x, y, (templates.shape[1] - 1) // 2, window)
+    a = correlate(window, 0, 0, templates[0], norms[0], totals)
+    b = correlate(window, 0, 0, templates[last], norms[last], totals) if last else a
+    return weight * a + (1 - weight) * b, max(a, b)
+
+
+@njit(cache=True, nogil=True)
+def settle(image, x, y, templates, norms, weight, reach, least):
+    """Nearest peak of the likeness within ``reach`` pixels, or (x, y) itself where nothing there is like the clicks.
+
+    Returns x, y and the greater correlation there.
+    """
+    size, across = templates.shape[1], templates.shape[2]
+    window, totals = np.empty((size, across), np.float32), np.empty(across, np.float32)
+    top, match = _likeness(image, x, y, templates, norms, weight, window, totals)
+    begin, found, px, py = match, match, x, y
+    around = np.zeros((3, 3))
+    stride = 2.0
+    while stride > 0.4:
+        bx, by = px, py
+        around[1, 1] = top
+        for j in range(3):
+            for i in range(3):
+                if i == 1 and j == 1:
+                    continue
+                qx, qy = px + (i - 1) * stride, py + (j - 1) * stride
+                value, greater = _likeness(image, qx, qy, templates, norms, weight, window, totals)
+                around[j, i] = value
+                if value > top and (qx - x) ** 2 + (qy - y) ** 2 <= reach * reach:
+                    top, found, bx, by = value, greater, qx, qy
+        if bx == px and by == py:
+            if stride < 0.6:
+                px += stride * _vertex(around[1, 0], top, around[1, 2])
+                py += stride * _vertex(around[0, 1], top, around[2, 1])
+            stride /= 2
+        px, py = (bx, by) if stride > 0.4 and (bx != px or by != py) else (px, py)
+    if found < least:
+        return x, y, begin
+    return px, py, found
+
+
+@njit(cache=True, nogil=True)
+def kinship(first, x, y, second, u, v, half):
+    """Correlation of the window at (x, y) of one picture with that at (u, v) of another."""
+    size = 2 * half + 1
+    template, norm = make_template(first, x, y, half)
+    window, totals = np.empty((size, 3 * size), np.float32), np.empty(3 * size, np.float32)
+    read_colours(second, u, v, half, window)
+    return correlate(window, 0, 0, template, norm, totals)
+
+
+@njit(cache=True, nogil=True)
 def flows_at(bits, table, scale, places, count, mask, out):
     """Dense flow at each place into out (k, 2)."""
     for k in range(count):

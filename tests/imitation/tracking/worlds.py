@@ -40,10 +40,13 @@ def moving(
     seed: int = 0,
     dimming: float = 0.0,
     bar: tuple[int, int] | None = None,
+    bar_width: int = 60,
+    bar_speed: float = 0.0,
 ) -> tuple[Frames, NDArray[np.float64]]:
     """A texture that moves sideways and in a sine; optionally darker and darker, or a grey bar over the point.
 
-    Returns the frames and the true path (n, 2) of one point. ``bar`` = first and last frame of the bar.
+    Returns the frames and the true path (n, 2) of one point. ``bar`` = first and last frame of the bar,
+    which is over the point in all of them and stands still or moves by ``bar_speed`` pixels a frame.
     """
     texture = Texture(seed)
     t = np.arange(frames)
@@ -55,7 +58,8 @@ def moving(
         colours = texture(columns - shift[i, 0], rows - shift[i, 1])
         shown = picture(colours * (1 - dimming * i / max(frames - 1, 1)))
         if bar is not None and bar[0] <= i <= bar[1]:
-            left = int(path[i, 0]) - 15
-            shown[:, max(left, 0) : left + 30] = 128
+            middle = path[bar[0] : bar[1] + 1, 0].mean() + bar_speed * (i - (bar[0] + bar[1]) / 2)
+            left = int(middle - bar_width / 2)
+            shown[:, max(left, 0) : left + bar_width] = 128
         pictures.append(shown)
     return pictures, path
