@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from imitation.cameras.path import CameraPath
-from imitation.progress import Progress, silent
+from imitation.progress import Progress, part, silent
 from resources.world import ply, truth
 from resources.world.body import Body
 from resources.world.camera import make_camera
 from resources.world.characters import characters, vertex_colours
+from resources.world.clip import tolerances
 from resources.world.gait import Walk, walk
 from resources.world.render import Look, Stage
 from resources.world.rotation import about
@@ -48,37 +49,36 @@ def encode(path: Path, frames: list[NDArray[np.uint8]], fps: int, quality: int =
 
 def make_sample(folder: Path, progress: Progress | None = None) -> None:
     """Write clip.mp4, truth.npz, sample.json and the characters into a folder."""
-    report = progress or silent
     folder.mkdir(parents=True, exist_ok=True)
-    bodies = characters()
-    walked = walk(bodies["hound"][0], FRAMES, STAIRS)
+    walked = walk(characters()["hound"][0], FRAMES, STAIRS)
     cameras = sample_camera(walked)
-    stage = Stage(garden(STAIRS), walked, Look(size=SIZE, blur=0.0))
-    frames = []
-    for t in range(FRAMES):
-        frames.append(stage.frame(t, cameras))
-        report(0.8 * (t + 1) / FRAMES)
-    encode(folder / "clip.mp4", frames, FPS)
+    stage = Stage(garden(STAIRS), walked, Look(size=SIZE))
+    encode(folder / "clip.mp4", list(stage.clip(cameras, part(progress, 0.0, 0.85))), FPS)
+    make_truth(folder, stage, walked, cameras)
+    (progress or silent)(1.0)
+
+
+def make_truth(folder: Path, stage: Stage, walked: Walk, cameras: CameraPath) -> None:
+    """Write all but the pictures: truth.npz, sample.json and the characters."""
+    bodies = characters()
     movers = {"subject": walked}
     for name, (body, _) in bodies.items():
         movers[name] = walked if body is walked.body else walk(body, FRAMES, STAIRS, steps=walked.footfalls)
     visible = _visible(stage, walked, cameras)
-    write_truth = truth.Truth(cameras, {name: truth.moving(of) for name, of in movers.items()}, visible)
-    truth.save(folder / "truth.npz", write_truth)
-    report(0.9)
+    made = truth.Truth(cameras, {name: truth.moving(of) for name, of in movers.items()}, visible)
+    truth.save(folder / "truth.npz", made)
     marks = user_marks(stage, walked, cameras, visible)
-    marks["characters"] = {
-        name: _character(folder, name, *bodies[name], movers[name], marks["clicks"]) for name in bodies
-    }
+    clicked = marks["clicks"]
+    marks["characters"] = {name: _character(folder, name, *bodies[name], movers[name], clicked) for name in bodies}
     text = json.dumps(marks, indent=None, separators=(",", ":"))
     (folder / "sample.json").write_text(text.replace('},"', '},\n"').replace('],"', '],\n"') + "\n")
-    report(1.0)
 
 
 def _visible(stage: Stage, walked: Walk, cameras: CameraPath) -> dict[str, NDArray[np.bool_]]:
     names = walked.body.key_vertices | truth.extra_vertices(walked.body)
     chosen = list(names.values())
-    seen = np.stack([stage.visible(t, cameras[t], walked.vertices[t, chosen]) for t in range(len(cameras))])
+    slack = tolerances(walked, list(names))
+    seen = np.stack([stage.visible(t, cameras[t], walked.vertices[t, chosen], slack) for t in range(len(cameras))])
     return {name: seen[:, i] for i, name in enumerate(names)}
 
 

@@ -143,8 +143,8 @@ class Stage:
         shown: NDArray[np.bool_] = ids >= len(self.still.faces)
         return shown
 
-    def visible(self, time: int, camera: Camera, points: Array, tolerance: float = 0.02) -> NDArray[np.bool_]:
-        """Which points (n, 3) on surfaces are in the picture with nothing in front of them by more than a tolerance."""
+    def visible(self, time: int, camera: Camera, points: Array, tolerance: float | Array = 0.02) -> NDArray[np.bool_]:
+        """Which points (n, 3) on surfaces are in the picture with nothing in front by more than a tolerance."""
         depth = np.nan_to_num(self.depth(time, camera, subject=True), nan=np.inf)
         pixels, z = camera.project(points), camera.depth(points)
         width, height = self.look.size

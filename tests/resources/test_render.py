@@ -153,7 +153,7 @@ def test_looks_do_what_they_say() -> None:
 
     plain = frames()
     changed = frames(light_change=0.8)
-    assert abs(changed[1].mean() - plain[1].mean()) > 2
+    assert abs(changed[1].mean() - plain[1].mean()) > 1
     drifted = frames(gain_drift=0.1)
     assert abs(drifted[1].mean() - plain[1].mean()) > 2
     silent, noisy = frames(grain=0.0), frames(grain=4.0)
