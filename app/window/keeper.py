@@ -59,8 +59,8 @@ class Keeper(QObject):
 
     def _moved_before(self) -> bool:
         """Whether a motion was solved before: only what was there once is kept up without being asked for."""
-        states = [self.project.state(stage) for stage in self._motion()]
-        return any(state in ("stale", "running") for state in states)
+        characters = [each for each in self.project.document.characters if each.visible]
+        return any(self.project.motion_state(each.id) in ("stale", "running") for each in characters)
 
     def _tracks(self) -> list[Stage]:
         stages = self.project.session.stages

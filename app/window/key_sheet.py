@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from itertools import groupby
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QDialog, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.window.controls import Chip, label
@@ -38,3 +39,11 @@ class KeySheet(QDialog):
                 column.addSpacing(8)
             column.addStretch(1)
             row.addLayout(column)
+
+    def event(self, event: QEvent) -> bool:
+        """Keep Escape for closing the sheet."""
+        escape = isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape
+        if event.type() == QEvent.Type.ShortcutOverride and escape:
+            event.accept()
+            return True
+        return super().event(event)

@@ -123,8 +123,7 @@ def _poses(project: Project, character: Character) -> Lane:
 
 def _solution(project: Project, character: Character, solved: NDArray[np.bool_] | None) -> Lane:
     last = max(project.frame_count - 1, 0)
-    stage = project.session.stages.animation(character.id)
-    state = project.state(stage)
+    state = project.motion_state(character.id)
     bars: list[Bar] = []
     if state == "running" and solved is not None and solved.any():
         edges = np.flatnonzero(np.diff(solved)) + 1

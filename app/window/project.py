@@ -168,6 +168,14 @@ class Project(QObject):
         """How a stage stands."""
         return self.session.runner.state(stage)
 
+    def motion_state(self, character_id: str) -> str:
+        """How a character's motion stands; what was moved before and lacks only its edits is stale."""
+        stages = self.session.stages
+        state = self.state(stages.animation(character_id))
+        if state == "missing" and stages.base(character_id) in self.session.cache:
+            return "stale"
+        return state
+
     def start(self, label: str, *stages: Stage) -> Job:
         """Compute stages in the background."""
         job = self.session.start(label, stages, self._ears)

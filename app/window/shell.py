@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
-from PySide6.QtGui import QAction, QCloseEvent, QDragEnterEvent, QDropEvent, QImage, QKeySequence
-from PySide6.QtWidgets import QApplication, QMainWindow, QSplitter, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QImage
+from PySide6.QtWidgets import QMainWindow, QSplitter, QStackedWidget, QVBoxLayout, QWidget
 
 from app.actions.session import Session
 from app.model.document import Document
-from app.window import files, icons, settings, theme
+from app.window import files, icons, settings
 from app.window.background_call import BackgroundCalls
 from app.window.character import CharacterWorkspace
 from app.window.controls import ErrorBar
+from app.window.dispatch import Dispatch
 from app.window.file_commands import FileCommands
-from app.window.key_sheet import KeySheet
-from app.window.keys import COMMANDS
 from app.window.lanes_of import character_lanes, video_lanes
 from app.window.navigation import Navigator
 from app.window.opening import Opened
@@ -51,7 +49,7 @@ class Shell(QMainWindow):
         self.navigator = Navigator(lambda: self.project, self)
         self._build()
         self._connect()
-        self._add_keys()
+        self.dispatch = Dispatch(self)
         self._autosave = QTimer(self)
         self._autosave.setInterval(AUTOSAVE)
         self._autosave.timeout.connect(self.files.autosave)
@@ -95,17 +93,10 @@ class Shell(QMainWindow):
         for workspace in (self.video, self.character):
             workspace.hint.connect(self._hint)
             workspace.run_wanted.connect(lambda: self.do("propagate"))
-        self.character.lanes_changed.connect(self._refresh_soon)
+        self.character.lanes_changed.connect(self.refresh_soon)
         self.character.inspector.go.connect(self.navigator.go)
         self.character.inspector.on_release.connect(self._propagate_on_release)
         self.navigator.playback.playing_changed.connect(self.timeline.transport.show_playing)
-
-    def _add_keys(self) -> None:
-        for command in COMMANDS:
-            action = QAction(command.text, self)
-            action.setShortcuts([QKeySequence(key) for key in command.keys])
-            action.triggered.connect(lambda _=False, name=command.id: self.do(name))
-            self.addAction(action)
 
     # the project -------------------------------------------------------------------------------------------------
 
@@ -169,7 +160,7 @@ class Shell(QMainWindow):
         self.stack.setCurrentWidget(self.welcome if empty else getattr(self, name))
         self.timeline.setVisible(not empty)
         if self._picture is not None:
-            self._in_sight().show_picture(*self._picture)
+            self.in_sight().show_picture(*self._picture)
         self._refresh.start()
 
     def _changed(self, before: Document, after: Document) -> None:
@@ -179,7 +170,8 @@ class Shell(QMainWindow):
         self.character.document_changed(before, after)
         self._refresh.start()
 
-    def _refresh_soon(self) -> None:
+    def refresh_soon(self) -> None:
+        """Show the state once whatever is under way is done."""
         self._refresh.start()
 
     def refresh(self) -> None:
@@ -224,13 +216,14 @@ class Shell(QMainWindow):
 
     def _loaded(self, frame: int, picture: QImage) -> None:
         self._picture = (frame, picture)
-        self._in_sight().show_picture(frame, picture)
+        self.in_sight().show_picture(frame, picture)
 
-    def _in_sight(self) -> VideoWorkspace | CharacterWorkspace:
+    def in_sight(self) -> VideoWorkspace | CharacterWorkspace:
+        """The workspace shown."""
         return self.video if self.workspace == "video" else self.character
 
     def _hint(self, sentence: str) -> None:
-        if self.sender() is self._in_sight():
+        if self.sender() is self.in_sight():
             self.status.show_hint(sentence)
 
     def _shown_at(self, frame: int, sentence: str) -> None:
@@ -258,42 +251,9 @@ class Shell(QMainWindow):
             self.opened.keeper.propagate_on_release = on
             self.opened.keeper.keep_up()
 
-    # commands ----------------------------------------------------------------------------------------------------
-
     def do(self, name: str) -> None:
-        """Do a command: of the workspace first, then of time, of files, of the window."""
-        if self.stack.currentWidget() is not self.welcome and self._in_sight().command(name):
-            return
-        if self.navigator.command(name) or self.files.command(name):
-            return
-        handler = self._handlers().get(name)
-        if handler is not None:
-            handler()
-
-    def _handlers(self) -> dict[str, Callable[[], object]]:
-        if self.opened is None:
-            return {}
-        project, keeper = self.opened.project, self.opened.keeper
-        return {
-            "undo": project.undo,
-            "redo": project.redo,
-            "cancel": project.cancel_work,
-            "cancel_work": project.cancel_work,
-            "propagate": keeper.run_missing,
-            "video": lambda: self.show_workspace("video"),
-            "character": lambda: self.show_workspace("character"),
-            "fit_time": self.timeline.lanes.show_all,
-            "light": self.switch_look,
-            "keys": lambda: KeySheet(self).show(),
-        }
-
-    def switch_look(self) -> None:
-        """Change between dark and light."""
-        application = QApplication.instance()
-        look = theme.LIGHT if theme.active().name == "dark" else theme.DARK
-        theme.apply(application, look)  # type: ignore[arg-type]
-        self.timeline.lanes.refresh()
-        self._refresh.start()
+        """Do a command."""
+        self.dispatch.do(name)
 
     # dropping and closing ----------------------------------------------------------------------------------------
 

@@ -11,7 +11,7 @@ import pytest
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QApplication, QLabel, QPushButton
 
 from app.actions.session import Session
 from app.formats import write_mesh, write_video
@@ -191,10 +191,10 @@ def test_undo_button_names_what_it_takes_back(shell: Shell) -> None:
 def test_light_and_dark(shell: Shell) -> None:
     """The look changes while the window is open, and back."""
     dark = shell.grab().toImage().pixelColor(700, 24).lightness()
-    shell.switch_look()
+    shell.do("light")
     settle()
     assert shell.grab().toImage().pixelColor(500, 24).lightness() > 150 > dark
-    shell.switch_look()
+    shell.do("light")
     settle()
     assert theme.active() is theme.DARK
 
@@ -207,7 +207,7 @@ def test_the_sheet_of_keys_shows(shell: Shell) -> None:
     assert any("Ctrl+Z" in label.text() for label in sheet.findChildren(QLabel))
     QTest.keyClick(sheet, Qt.Key.Key_Escape)
     settle()
-    assert not sheet.isVisible() if shell.findChild(KeySheet) else True
+    assert shell.findChild(KeySheet) is None
 
 
 @pytest.mark.parametrize("size", [(1180, 720), (1440, 900), (1920, 1080)])
@@ -217,7 +217,7 @@ def test_nothing_is_clipped(shell: Shell, size: tuple[int, int], workspace: str)
     shell.resize(*size)
     shell.project.select_track(shell.project.document.tracks[0].id)
     shell.show_workspace(workspace)
-    settle(80)
+    settle(300)
     for column in shell.findChildren(ScrollColumn):
         if column.isVisible():
             assert column.widget().width() <= column.viewport().width() + 1
@@ -263,8 +263,3 @@ def test_only_the_viewport_knows_the_3d_library() -> None:
             names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
             names += [each.name for each in node.names] if isinstance(node, ast.Import) else []
             assert not any(name.split(".")[0] in ("pyvista", "pyvistaqt", "vtkmodules", "vtk") for name in names), path
-
-
-def test_children_of_the_window_have_a_parent(shell: Shell) -> None:
-    """No part floats outside the window."""
-    assert all(widget.window() is shell for widget in shell.findChildren(QWidget) if not widget.isWindow())

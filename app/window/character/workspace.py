@@ -176,7 +176,7 @@ class CharacterWorkspace(QWidget):
         before = self.posing.before if self.posing is not None else None
         self.mesh.show_handles(handles(project, character, vertices, before))
         if self.mesh.notes is not None:
-            state = project.state(project.session.stages.animation(character.id))
+            state = project.motion_state(character.id)
             words = {"fresh": ("up to date", "ok"), "running": ("being solved", "accent"), "stale": ("waiting", "warn")}
             self.mesh.notes.show_frame(self.frame, project.frame_count, self.frame / max(project.fps, 1e-9))
             self.mesh.notes.show_right(*words.get(state, ("not solved yet", "text3")))

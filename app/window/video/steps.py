@@ -52,7 +52,7 @@ def steps(project: Project) -> list[Step]:
         pairs = len(character.pairs)
         paired = "done" if pairs >= 3 else "todo"
         made.append(Step("Pairs", f"{pairs} of {len(document.tracks)} points", paired))
-        state = project.state(stages.animation(character.id))
+        state = project.motion_state(character.id)
         made.append(Step("Motion", _words(state), _state(state)))
     else:
         made.append(Step("Character", "add a mesh", "todo"))

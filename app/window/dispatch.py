@@ -1,0 +1,66 @@
+"""Commands of the window itself, and where every other command goes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import QApplication
+
+from app.window import settings, theme
+from app.window.key_sheet import KeySheet
+from app.window.keys import COMMANDS
+
+if TYPE_CHECKING:
+    from app.window.shell import Shell
+
+
+class Dispatch:
+    """Asks the workspace in sight first, then time, files, and the window; belongs to one window."""
+
+    def __init__(self, shell: Shell) -> None:
+        self.shell = shell
+        for command in COMMANDS:
+            action = QAction(command.text, shell)
+            action.setShortcuts([QKeySequence(key) for key in command.keys])
+            action.triggered.connect(lambda _=False, name=command.id: self.do(name))
+            shell.addAction(action)
+
+    def do(self, name: str) -> None:
+        """Do a command."""
+        shell = self.shell
+        if shell.stack.currentWidget() is not shell.welcome and shell.in_sight().command(name):
+            return
+        if shell.navigator.command(name) or shell.files.command(name):
+            return
+        handler = self._handlers().get(name)
+        if handler is not None:
+            handler()
+
+    def _handlers(self) -> dict[str, Callable[[], object]]:
+        shell = self.shell
+        if shell.opened is None:
+            return {}
+        project, keeper = shell.opened.project, shell.opened.keeper
+        return {
+            "undo": project.undo,
+            "redo": project.redo,
+            "cancel": project.cancel_work,
+            "cancel_work": project.cancel_work,
+            "propagate": keeper.run_missing,
+            "video": lambda: shell.show_workspace("video"),
+            "character": lambda: shell.show_workspace("character"),
+            "fit_time": shell.timeline.lanes.show_all,
+            "light": self.switch_look,
+            "keys": lambda: KeySheet(shell).show(),
+        }
+
+    def switch_look(self) -> None:
+        """Change between dark and light, now and at the next start."""
+        application = QApplication.instance()
+        look = theme.LIGHT if theme.active().name == "dark" else theme.DARK
+        theme.apply(application, look)  # type: ignore[arg-type]
+        settings.settings().setValue("look", look.name)
+        self.shell.timeline.lanes.refresh()
+        self.shell.refresh_soon()

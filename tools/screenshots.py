@@ -1,0 +1,140 @@
+"""Pictures of the window with real content, for the documentation: docs/screenshots/*.png.
+
+The sample is solved once and kept in build/, so that a second run is quick.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT))
+
+from app.actions.sample import fill_with_sample  # noqa: E402
+from app.actions.session import Session  # noqa: E402
+from app.window.application import make_application  # noqa: E402
+from app.window.shell import Shell  # noqa: E402
+
+TARGET = ROOT / "docs" / "screenshots"
+SIZES = ((1440, 900), (1920, 1080))
+
+
+def solved_sample(folder: Path) -> Path:
+    """The sample as a solved project in a folder; made where it is not there."""
+    place = folder / "Sample.motionwright"
+    if not place.exists():
+        print("solving the sample, once ...")
+        session = Session.new(place)
+        fill_with_sample(session)
+        session.save()
+        for character in session.document.characters[:1]:
+            session.result(session.stages.animation(character.id))
+        for track in session.document.tracks:
+            session.result(session.stages.track(track.id))
+        session.close()
+    return place
+
+
+class Camera:
+    """Takes pictures of a window."""
+
+    def __init__(self, shell: Shell, application: object) -> None:
+        self.shell, self.application = shell, application
+
+    def live(self, seconds: float, until: Callable[[], bool] | None = None) -> None:
+        """Let the window live."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end and not (until is not None and until()):
+            self.application.processEvents()  # type: ignore[attr-defined]
+            time.sleep(0.005)
+
+    def take(self, name: str) -> None:
+        """Take a picture at each size."""
+        for width, height in SIZES:
+            self.shell.resize(width, height)
+            self.live(1.2)
+            self.shell.grab().save(str(TARGET / f"{name}-{width}x{height}.png"))
+        print(name)
+
+
+def main() -> None:
+    """Take all pictures."""
+    TARGET.mkdir(parents=True, exist_ok=True)
+    application = make_application()
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("XDG_STATE_HOME", "XDG_CONFIG_HOME"):
+            os.environ[name] = folder
+        shell = Shell(Session.new(), viewport="raster")
+        shell.show()
+        camera = Camera(shell, application)
+        camera.take("welcome")
+        place = Path(sys.argv[1]) if len(sys.argv) > 1 else solved_sample(ROOT / "build" / "screenshots")
+        shell.open_session(Session.open(place))
+        camera.live(20, lambda: not shell.video.canvas.picture.isNull())
+        _video(shell, camera)
+        _character(shell, camera)
+        if shell.project is not None:
+            shell.project.cancel_work()
+            shell.project.session.history.mark_saved()
+        shell.close()
+
+
+def _quiet(shell: Shell) -> bool:
+    return shell.project is not None and not shell.project.progress
+
+
+def _video(shell: Shell, camera: Camera) -> None:
+    project = shell.project
+    assert project is not None
+    names = {track.name: track.id for track in project.document.tracks}
+    track = next((names[name] for name in names if "front paw" in name), project.document.tracks[0].id)
+    project.show_frame(project.frame_count // 2)
+    project.select_track(track)
+    camera.live(3, lambda: shell.video.frame == project.frame)
+    camera.live(2)
+    camera.take("video")
+    shell.video.camera_button.setChecked(True)
+    shell.video.names_button.setChecked(False)
+    project.select_track("")
+    camera.take("video-camera")
+    shell.video.camera_button.setChecked(False)
+    shell.video.names_button.setChecked(True)
+
+
+def _character(shell: Shell, camera: Camera) -> None:
+    project = shell.project
+    assert project is not None
+    shell.do("character")
+    camera.live(30, lambda: shell.character.mesh.viewport is not None)
+    camera.live(2)
+    camera.take("character-orbit")
+    shell.do("look_camera")
+    character = project.document.character(project.character_id)
+    names = {project.document.track(track).name: vertex for track, vertex in character.pairs.items()}
+    vertex = next((names[name] for name in names if name in ("nose", "muzzle", "head")), next(iter(names.values())))
+    project.select_vertex(vertex)
+    camera.take("character-camera")
+    shell.do("look_side")
+    camera.take("character-side")
+    shell.do("look_orbit")
+    shown = shell.character.motion.vertices(shell.character.frame)
+    if shown is not None and shell.character.posing is not None:
+        x, y, z = (float(value) for value in shown[vertex])
+        shell.character._pose(vertex, (x, y, z + 0.12), True)
+        camera.live(20, lambda: bool(project.document.character(character.id).edits))
+        camera.live(60, lambda: _quiet(shell))
+        shell.do("ghosts")
+        camera.live(1)
+        camera.take("character-edited")
+        shell.do("ghosts")
+
+
+if __name__ == "__main__":
+    main()
