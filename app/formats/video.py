@@ -112,7 +112,7 @@ class VideoFrames(FrameSource):
         if self._container is not None:
             self._container.close()
         try:
-            self._container = av.open(str(self.path), options={"fflags": "+genpts"})
+            self._container = av.open(str(self.path), options={"fflags": "+genpts"}, metadata_errors="replace")
         except av.FFmpegError as error:
             raise InputError(
                 f"The file {self.path.name} is not a video that can be read: choose another file, or convert it to mp4."

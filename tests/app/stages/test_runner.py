@@ -30,7 +30,7 @@ def add(context: Context, inputs: tuple[str, int], *needs: int) -> int:
     return inputs[1] + sum(needs)
 
 
-def slow(context: Context, inputs: tuple[float]) -> str:
+def slow(context: Context, inputs: tuple[float], *needs: Any) -> str:
     """Take some seconds in small steps."""
     end = time.monotonic() + inputs[0]
     while time.monotonic() < end:
