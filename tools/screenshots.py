@@ -128,8 +128,8 @@ def _character(shell: Shell, camera: Camera) -> None:
     if shown is not None and shell.character.posing is not None:
         x, y, z = (float(value) for value in shown[vertex])
         shell.character._pose(vertex, (x, y, z + 0.12), True)
-        camera.live(20, lambda: bool(project.document.character(character.id).edits))
-        camera.live(60, lambda: _quiet(shell))
+        camera.live(90, lambda: bool(project.document.character(character.id).edits))
+        camera.live(90, lambda: _quiet(shell))
         shell.do("ghosts")
         camera.live(1)
         camera.take("character-edited")

@@ -48,7 +48,7 @@ def character_lanes(project: Project, solved: NDArray[np.bool_] | None) -> list[
 def _pictures(project: Project) -> Lane:
     masks = tuple(Diamond(frame) for frame in project.document.masks)
     last = max(project.frame_count - 1, 0)
-    row = Row("masks", (Bar(0, last, "line2", "dim"),) if masks else (), masks)
+    row = Row("masks", (Bar(0, last, "line2", "line"),) if masks else (), masks)
     title = f"Video, {len(masks)} mask{'s' if len(masks) != 1 else ''}" if masks else "Video"
     return Lane("video", title, "video", (row,) if masks else (), 12, 1, thumbnails=True)
 
@@ -117,7 +117,7 @@ def _poses(project: Project, character: Character) -> Lane:
         for frame, edit in character.edits.items()
     )
     last = max(project.frame_count - 1, 0)
-    row = Row("poses", (Bar(0, last, "edit", "dim"),) if marks else (), marks)
+    row = Row("poses", (Bar(0, last, "edit", "line"),) if marks else (), marks)
     return Lane("poses", f"Pose edits, {len(marks)}", "pose", (row,), 22, 1, padding=2)
 
 

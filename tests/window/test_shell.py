@@ -217,7 +217,9 @@ def test_nothing_is_clipped(shell: Shell, size: tuple[int, int], workspace: str)
     shell.resize(*size)
     shell.project.select_track(shell.project.document.tracks[0].id)
     shell.show_workspace(workspace)
-    settle(300)
+    wait_for(lambda: workspace == "video" or shell.character.mesh.viewport is not None)
+    settle(100)
+    settle(100)
     for column in shell.findChildren(ScrollColumn):
         if column.isVisible():
             assert column.widget().width() <= column.viewport().width() + 1

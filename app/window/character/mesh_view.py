@@ -37,6 +37,7 @@ class MeshView(Panel):
         self.ghosts: Callable[[], Sequence[tuple[int, NDArray[np.float64]]]] = tuple
         self._mesh: tuple[int, int] = (0, 0)
         self._ground: tuple[float, ...] = ()
+        self._faced = False
         bar = self.header.row
         self.looks = QButtonGroup(self)
         self.look_buttons = {}
@@ -114,7 +115,7 @@ class MeshView(Panel):
 
     def clear(self) -> None:
         """Show no mesh."""
-        self._mesh = (0, 0)
+        self._mesh, self._faced = (0, 0), False
         if self.viewport is not None:
             self.viewport.clear_mesh()
 
@@ -138,6 +139,9 @@ class MeshView(Panel):
         """Take the camera and the picture of the frame."""
         if self.viewport is not None:
             self.viewport.show_camera(camera, picture)
+            if camera is not None and not self._faced:
+                self._faced = True
+                self.viewport.orbit_from(camera)
         self.look_buttons["camera"].setEnabled(camera is not None)
         self.look_buttons["side"].setEnabled(camera is not None)
 
@@ -153,9 +157,7 @@ class MeshView(Panel):
 
     def _show_scene(self, on: bool) -> None:
         if self.viewport is not None:
-            for name in ("points", "path", "ground"):
-                self.viewport.scene.show(name, on)
-            self.viewport.redraw()
+            self.viewport.show_surroundings(on)
 
     def _over(self) -> None:
         if self.viewport is not None:

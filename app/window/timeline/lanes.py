@@ -13,7 +13,7 @@ from app.window.timeline.axis import LABELS, Axis
 
 RULER = 26
 LOW, TALLER = 14, 5
-Style = Literal["solid", "dim", "hatch", "outline"]
+Style = Literal["solid", "dim", "hatch", "line"]
 
 
 @dataclass(frozen=True)

@@ -79,9 +79,9 @@ def paint_bar(painter: QPainter, axis: Axis, bar: Bar, top: float, height: float
     box = QRectF(left, top + (height - thick) / 2, max(right - left, 2.0), thick)
     colour = look.colour(bar.colour)
     painter.setPen(Qt.PenStyle.NoPen)
-    if bar.style == "outline":
-        painter.setPen(QPen(colour, 1, Qt.PenStyle.DashLine))
-        painter.setBrush(Qt.BrushStyle.NoBrush)
+    if bar.style == "line":
+        painter.setBrush(look.colour(bar.colour, 130))
+        box = QRectF(left, top + height / 2 - 0.75, right - left, 1.5)
     elif bar.style == "hatch":
         dim = look.colour(bar.colour, 70)
         painter.setBrush(dim)

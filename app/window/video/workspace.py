@@ -35,7 +35,7 @@ class VideoWorkspace(QWidget):
         self.project: Project | None = None
         self.reading: Reading | None = None
         self.loader: FrameLoader | None = None
-        self.shown = Shown()
+        self.shown = Shown(names=False)
         self.frame = 0
         self.tool: Tool = "select"
         self.contact_start: tuple[str, int] | None = None
@@ -71,7 +71,7 @@ class VideoWorkspace(QWidget):
         bar = self.panel.header.row
         self.paths_button = toggle("paths", "Paths", lambda on: self._switch("paths", on), on=True)
         self.masks_button = toggle("masks", "Masks", lambda on: self._switch("masks", on), on=True)
-        self.names_button = toggle("labels", "Names", lambda on: self._switch("names", on), on=True)
+        self.names_button = toggle("labels", "Names", lambda on: self._switch("names", on))
         self.camera_button = toggle("camera", "Camera", lambda on: self._switch("camera", on))
         self.magnifier_button = toggle("magnifier", "Magnifier", self._magnify, key="Z")
         self.zoom = label("100 %", "label")

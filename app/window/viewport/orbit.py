@@ -65,6 +65,13 @@ def around(points: ArrayLike, orbit: Orbit | None = None, *, aspect: float = 1.4
     return replace(before, target=target, distance=1.02 * radius / spread)
 
 
+def facing(camera: Camera, target: ArrayLike, orbit: Orbit) -> Orbit:
+    """The orbit that looks at the target from near a solved camera, a little from the side and from above."""
+    offset = camera.centre - np.asarray(target, np.float64)
+    azimuth = math.atan2(float(offset[1]), float(offset[0])) + math.radians(24.0)
+    return replace(orbit, azimuth=azimuth, elevation=math.radians(16.0))
+
+
 def beside(camera: Camera, target: ArrayLike, orbit: Orbit) -> Orbit:
     """The orbit that looks at the target from the side of a solved camera: errors in depth can be seen there."""
     middle = np.asarray(target, np.float64)

@@ -16,7 +16,7 @@ from app.window.viewport.drag import Mode, VertexDrag, VertexReleased
 from app.window.viewport.handles import Handle, paint_handles
 from app.window.viewport.hosts import Choice, choose, make_host
 from app.window.viewport.lens import Lens, clipped, framed
-from app.window.viewport.orbit import Orbit, around, beside
+from app.window.viewport.orbit import Orbit, around, beside, facing
 from app.window.viewport.picking import pick_vertex
 from imitation.geometry import Camera
 
@@ -59,6 +59,7 @@ class Viewport(QWidget):
         self.camera: Camera | None = None
         self.picture: QImage | None = None
         self.mesh_opacity = 1.0
+        self.surroundings = True
         self.view = View()
         self._fit = True
         self.vertices: NDArray[np.float64] = np.zeros((0, 3))
@@ -117,10 +118,20 @@ class Viewport(QWidget):
         if looking == "side" and self.camera is not None:
             middle = self.vertices.mean(0) if len(self.vertices) else np.zeros(3)
             self.orbit = beside(self.camera, middle, around(self._subject(), self.orbit, aspect=self._aspect()))
-        overlaid = looking == "camera" and self.picture is not None
-        self.scene.show("shadow", not overlaid)
-        self.scene.show("path", not overlaid)
+        self.show_surroundings(self.surroundings)
+
+    def show_surroundings(self, on: bool) -> None:
+        """Show or hide ground, background points and the camera's path; over the video they are never drawn."""
+        self.surroundings = on
+        for name in ("points", "path", "ground"):
+            self.scene.show(name, on and not self.through_camera)
+        self.scene.show("shadow", not self.through_camera)
         self.redraw()
+
+    def orbit_from(self, camera: Camera) -> None:
+        """Orbit from about the side that the recovered camera is on, and show everything."""
+        self.orbit = facing(camera, self._subject().mean(0), self.orbit)
+        self.fit()
 
     def fit(self) -> None:
         """Show the whole mesh, or the whole picture."""
