@@ -101,14 +101,20 @@ def _invariant(projected: Array, count: int) -> tuple[Array, Array]:
     The matrix is not symmetric, so the left basis differs: read with it, a residual along the fast directions is not
     mistaken for one along the slow.
     """
-    from scipy.linalg import schur
+    from scipy.linalg import eig
 
-    middle = np.sort(np.linalg.eigvals(projected).real)[::-1][count - 1 : count + 1].mean()
-    _, basis, size = schur(projected, sort=lambda real, imaginary: real > middle)
-    _, other, twin = schur(projected.T, sort=lambda real, imaginary: real > middle)
-    right, left = basis[:, :size], other[:, : min(size, twin)]
-    right = right[:, : left.shape[1]]
-    return right, left @ np.linalg.inv(right.T @ left)
+    values, left, right = eig(projected, left=True, right=True)
+    order = np.argsort(-values.real, kind="stable")
+    real = values.real[order]
+    # Cut in the widest gap near the wanted number, so that no cluster and no conjugate pair is cut in two.
+    low = max(1, count - 8)
+    cut = low + int(np.argmax(real[low - 1 : count] - real[low : count + 1]))
+    chosen = [k for k in order[:cut] if values[k].imag >= 0]
+    bases = []
+    for vectors in (right[:, chosen], left[:, chosen]):
+        paired = vectors[:, values[chosen].imag > 0]
+        bases.append(np.linalg.qr(np.concatenate([vectors.real, paired.imag], axis=1))[0])
+    return bases[0], bases[1] @ np.linalg.inv(bases[0].T @ bases[1])
 
 
 class _Step:
