@@ -40,6 +40,7 @@ def test_pairs_in_any_order_and_resumed():
     assert np.array_equal(whole.backward, pieces.backward)
 
 
+@pytest.mark.slow
 def test_large_pictures_have_smaller_fields():
     """Above 1.3 million pixels the field is stored at half the size, in pixels of the full picture."""
     frames, path = moving(frames=2, size=(1080, 1920), speed=6.0, wave=0.0)
