@@ -19,7 +19,12 @@ def lasso(mask: NDArray[np.bool_], rng: np.random.Generator, margin: int = 5, ro
 
     kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * margin + 1, 2 * margin + 1))
     # Drawn over a post, not round it: whoever draws a lasso takes the hidden part in.
-    whole = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((13, 13), np.uint8))
+    whole = mask.astype(np.uint8)
+    for width in (13, 21, 31, 45, 61):
+        whole = cv2.morphologyEx(mask.astype(np.uint8), cv2.MORPH_CLOSE, np.ones((width, width), np.uint8))
+        _, _, found, _ = cv2.connectedComponentsWithStats(whole)
+        if (found[1:, cv2.CC_STAT_AREA] > 0.004 * mask.sum()).sum() <= 1:
+            break
     grown = cv2.dilate(whole, kernel)
     outlines, _ = cv2.findContours(grown, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     if not outlines:
