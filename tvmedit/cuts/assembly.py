@@ -56,8 +56,11 @@ def normal_equations(
     edges: Index,
     stiffness: float,
     point_share: float,
+    bandwidth: int,
 ) -> tuple[Array, Array]:
-    """Matrix (6 m, 6 m) and right side of one Gauss-Newton step.
+    """Banded matrix and right side of one Gauss-Newton step.
+
+    The matrix is symmetric; row r - c of column c of the result holds entry (r, c), for r >= c (LAPACK's lower band).
 
     Parameters
     ----------
@@ -75,9 +78,11 @@ def normal_equations(
         Weight of two nodes agreeing on each other's place.
     point_share : float
         Weight of the whole gap beside its part along the normal.
+    bandwidth : int
+        Largest difference of the numbers of two nodes that meet, plus 1.
     """
     size = 6 * len(places)
-    matrix, right = np.zeros((size, size)), np.zeros(size)
+    matrix, right = np.zeros((6 * bandwidth, size)), np.zeros(size)
     jacobian = np.zeros((3, 24))
     weighed = np.zeros((3, 24))
     metric = np.zeros((3, 3))
@@ -106,10 +111,13 @@ def normal_equations(
                     if weights[i, b] == 0.0 or bound[i, b] > bound[i, a]:
                         continue
                     for q in range(6):
+                        other = 6 * bound[i, b] + q
+                        if other > row:
+                            break
                         total = 0.0
                         for r in range(3):
                             total += jacobian[r, column] * weighed[r, 6 * b + q]
-                        matrix[row, 6 * bound[i, b] + q] += total
+                        matrix[row - other, other] += total
     for e in range(len(edges)):
         for side in range(2):
             j, k = edges[e, side], edges[e, 1 - side]
@@ -122,15 +130,15 @@ def normal_equations(
                 gap = turned + places[j, r] + moves[j, r] - places[k, r] - moves[k, r]
                 for p in range(6):
                     right[6 * j + p] -= stiffness * jacobian[r, p] * gap
-                    for q in range(6):
-                        matrix[6 * j + p, 6 * j + q] += stiffness * jacobian[r, p] * jacobian[r, q]
+                    for q in range(p + 1):
+                        matrix[p - q, 6 * j + q] += stiffness * jacobian[r, p] * jacobian[r, q]
                     # The other node's move enters with -1 in row r; only the lower half is kept.
                     if k < j:
-                        matrix[6 * j + p, 6 * k + 3 + r] -= stiffness * jacobian[r, p]
+                        matrix[6 * (j - k) + p - 3 - r, 6 * k + 3 + r] -= stiffness * jacobian[r, p]
                     else:
-                        matrix[6 * k + 3 + r, 6 * j + p] -= stiffness * jacobian[r, p]
+                        matrix[6 * (k - j) + 3 + r - p, 6 * j + p] -= stiffness * jacobian[r, p]
                 right[6 * k + 3 + r] += stiffness * gap
-                matrix[6 * k + 3 + r, 6 * k + 3 + r] += stiffness
+                matrix[0, 6 * k + 3 + r] += stiffness
     return matrix, right
 
 

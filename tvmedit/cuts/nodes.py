@@ -29,12 +29,15 @@ class DeformationGraph:
         Sum to 1.
     edges : (e, 2) int64
         Pairs of nodes that some vertex follows together.
+    bandwidth : int
+        Largest difference of the numbers of such a pair, plus 1: nodes are numbered along the body.
     """
 
     places: Array
     bound: Index
     weights: Array
     edges: Index
+    bandwidth: int
 
 
 def spread_nodes(vertices: Array, faces: NDArray[np.int32], spacing: float) -> DeformationGraph:
@@ -50,7 +53,22 @@ def spread_nodes(vertices: Array, faces: NDArray[np.int32], spacing: float) -> D
     weights /= weights.sum(axis=1, keepdims=True)
     pairs = np.concatenate([bound[:, [a, b]] for a in range(FOLLOWED) for b in range(a + 1, FOLLOWED)])
     pairs = np.unique(np.sort(pairs[pairs[:, 0] != pairs[:, 1]], axis=1), axis=0)
-    return DeformationGraph(vertices[chosen], bound, weights, pairs)
+    order = _along(len(chosen), pairs)
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    pairs, bound = rank[pairs], rank[bound]
+    widest = int(np.abs(pairs[:, 0] - pairs[:, 1]).max(initial=0)) + 1
+    return DeformationGraph(vertices[chosen[order]], bound, weights, pairs, widest)
+
+
+def _along(count: int, pairs: Index) -> Index:
+    """Number nodes so that those which meet have near numbers."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import reverse_cuthill_mckee
+
+    ends = np.concatenate([pairs, pairs[:, ::-1]])
+    table = coo_matrix((np.ones(len(ends)), (ends[:, 0], ends[:, 1])), shape=(count, count)).tocsr()
+    return np.asarray(reverse_cuthill_mckee(table, symmetric_mode=True), np.int64)
 
 
 def _adjacency(vertices: Array, faces: NDArray[np.int32]) -> tuple[Index, Index, Array]:

@@ -49,8 +49,8 @@ def surface_step(first: NDArray[np.floating], second: NDArray[np.floating]) -> f
     """Mean distance between two clouds of surface points to each other's nearest, both ways."""
     from scipy.spatial import cKDTree
 
-    there = cKDTree(second).query(first)[0].mean()
-    back = cKDTree(first).query(second)[0].mean()
+    there = np.mean(cKDTree(second).query(first)[0])
+    back = np.mean(cKDTree(first).query(second)[0])
     return float(0.5 * (there + back))
 
 

@@ -116,7 +116,8 @@ class LengthSearch:
             layers: list[dict[State, int]] = []
             for _ in range(MOST_CUTS + 1):
                 layers.append(layer)
-                done, following = 0, {}
+                done = 0
+                following: dict[State, int] = {}
                 for (node, at, played), lengths in layer.items():
                     base = self._repeated(node, played, lengths, mask)
                     if not base:

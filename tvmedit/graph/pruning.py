@@ -37,8 +37,8 @@ def prune_absolute(weights: Array, limit: float) -> tuple[Array, NDArray[np.bool
     reach = _reachable(np.isfinite(kept))
     poor = np.zeros((count, count), bool)
     over = np.argwhere(np.isfinite(weights) & ~np.isfinite(kept))
-    order = np.argsort(weights[over[:, 0], over[:, 1]], kind="stable") if len(over) else []
-    for a, b in over[order] if len(over) else []:
+    order = np.argsort(weights[over[:, 0], over[:, 1]], kind="stable")
+    for a, b in over[order]:
         if reach.all():
             break
         if not reach[a, b]:

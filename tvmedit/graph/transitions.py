@@ -86,7 +86,7 @@ class _Stack:
         if self.rows is None or other.rows is None:
             return frame_distances(self.part, other.part).astype(np.float64)
         square = self.energy[:, None] + other.energy - 2.0 * self.rows @ other.rows.T
-        return np.maximum(square, 0.0)
+        return np.asarray(np.maximum(square, 0.0))
 
 
 def _slide(values: Array, taps: Array) -> Array:

@@ -1,0 +1,249 @@
+"""Hiding a cut: for a moment around it, frames in between the two clips (the paper's future work)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.errors import InputError
+from imitation.progress import Progress, silent
+from tvmedit.cuts.registration import Registration, register
+from tvmedit.cuts.seams import surface_step
+from tvmedit.features.frames import check_faces, check_vertices, upright
+from tvmedit.graph.motion_graph import MotionGraph
+from tvmedit.graph.performance import Cut, Performance
+
+Array = NDArray[np.float64]
+Colours = NDArray[np.uint8]
+MeshSource = Callable[[int, int], Sequence[Any]]
+"""(sequence, frame) to (vertices (v, 3), faces (m, 3)) or (vertices, faces, colours (v, 3) uint8), as captured."""
+SECONDS = 0.3
+FEWEST = 3
+"""A blend of fewer good frames is refused."""
+
+
+@attrs.frozen(eq=False)
+class Shape:
+    """A mesh of a performance: vertices z up where the performer stands, faces, and colours if there are any."""
+
+    vertices: Array
+    faces: NDArray[np.int32]
+    colours: Colours | None = None
+
+
+@attrs.frozen(eq=False)
+class Blend:
+    """The frames in between at one cut.
+
+    Attributes
+    ----------
+    cut : Cut
+    shapes : dict of int to Shape
+        By position in the performance; empty where the blend is refused.
+    step_before, step_after : float
+        Largest surface step around the cut without and with the blend, in the meshes' unit.
+    residuals : dict of int to float
+        Of each registration tried, by position.
+    reason : str
+        Why it is refused, or why it is shorter than asked; empty otherwise.
+    """
+
+    cut: Cut
+    shapes: dict[int, Shape]
+    step_before: float
+    step_after: float
+    residuals: dict[int, float]
+    reason: str = ""
+
+
+def blend_cut(
+    graph: MotionGraph,
+    performance: Performance,
+    cut: Cut,
+    mesh_of: MeshSource,
+    *,
+    seconds: float = SECONDS,
+    iterations: int = 14,
+    progress: Progress | None = None,
+) -> Blend:
+    """Make the frames around a cut pass from one clip to the other.
+
+    Around the cut both clips are there: the one that is left goes on beyond its last frame, the one entered begins
+    before its first. Each of the window's frames is the first clip's mesh deformed towards the second's, by a share
+    that rises smoothly. Registration starts at the cut, where the two are most alike, and runs outwards; frames where
+    it fails end the window on that side. Colours pass from one clip's to the nearest ones of the other.
+
+    Parameters
+    ----------
+    graph : MotionGraph
+    performance : Performance
+        Aligned.
+    cut : Cut
+        One of the performance's.
+    mesh_of : callable
+        Gives the captured mesh of (sequence, frame).
+    seconds : float
+        Length of the window.
+    iterations : int
+        Of the first registration; the others start from it and take a third as many.
+    progress : callable, optional
+
+    Returns
+    -------
+    Blend
+        Refused, with a reason, where it would break the body.
+    """
+    if not performance.aligned:
+        raise InputError("The performance has not been aligned: align it before blending its cuts.")
+    if cut.kind == "loop" or not 0 < cut.position < len(performance):
+        raise InputError("The cut is not inside the performance: blend cuts and wraps.")
+    report = progress or silent
+    pairs = _Pairs(graph, performance, cut, mesh_of)
+    first, last = _window(graph, performance, cut, seconds)
+    centre = 0 if last >= 0 else last
+    found: dict[int, Registration] = {}
+    tried: dict[int, float] = {}
+    reason = ""
+    outwards = [list(range(centre, last + 1)), list(range(centre - 1, first - 1, -1))]
+    total, done = last - first + 1, 0
+    for side in outwards:
+        start = found.get(centre)
+        for k in side:
+            report(done / total)
+            done += 1
+            source, target = pairs.shapes(k)
+            registration = register(
+                (source.vertices, source.faces),
+                (target.vertices, target.faces),
+                height=pairs.height,
+                edge=pairs.edge,
+                iterations=iterations if start is None else max(4, iterations // 3),
+                start=start,
+            )
+            tried[cut.position + k] = registration.residual
+            if registration.reason:
+                reason = reason or registration.reason
+                break
+            found[k] = start = registration
+    report(1.0)
+    before = _steps(pairs, {}, cut, first, last)
+    if len(found) < FEWEST:
+        why = reason or "the two clips share too few frames around the cut"
+        return Blend(cut, {}, before, before, tried, f"The cut is left as it is: {why}.")
+    shapes = _in_between(pairs, found, cut)
+    note = f"The blend is shorter than asked: {reason}." if reason else ""
+    return Blend(cut, shapes, before, _steps(pairs, shapes, cut, first, last), tried, note)
+
+
+def performance_shape(
+    graph: MotionGraph, performance: Performance, position: int, mesh_of: MeshSource, blends: Sequence[Blend] = ()
+) -> Shape:
+    """Mesh of a performance at a position, where the performer stands then; from a blend where there is one."""
+    for blend in blends:
+        if position in blend.shapes:
+            return blend.shapes[position]
+    sequence, frame = (int(value) for value in performance.frames[position])
+    shape = _load(graph, mesh_of, sequence, frame)
+    return attrs.evolve(shape, vertices=performance.place(position, shape.vertices))
+
+
+def _load(graph: MotionGraph, mesh_of: MeshSource, sequence: int, frame: int) -> Shape:
+    mesh = mesh_of(sequence, frame)
+    vertices = check_vertices(mesh[0], frame)
+    faces = check_faces(mesh[1], len(vertices), frame)
+    colours = None if len(mesh) < 3 or mesh[2] is None else np.asarray(mesh[2], np.uint8)
+    return Shape(upright(vertices, graph.analyses[sequence].up), faces, colours)
+
+
+class _Pairs:
+    """Both clips' meshes k frames from the cut, placed in the performance."""
+
+    def __init__(self, graph: MotionGraph, performance: Performance, cut: Cut, mesh_of: MeshSource) -> None:
+        self.graph, self.performance, self.cut, self.mesh_of = graph, performance, cut, mesh_of
+        self.source = graph.nodes[cut.source].sequence
+        self.target = graph.nodes[cut.target].sequence
+        self.height = graph.analyses[self.source].height
+        self.edge = max(graph.analyses[self.source].edge, graph.analyses[self.target].edge)
+        self._known: dict[int, tuple[Shape, Shape]] = {}
+
+    def shapes(self, k: int) -> tuple[Shape, Shape]:
+        """The clip that is left, going on, and the one entered."""
+        if k not in self._known:
+            earlier = _load(self.graph, self.mesh_of, self.source, self.cut.leave + 1 + k)
+            later = _load(self.graph, self.mesh_of, self.target, self.cut.enter + k)
+            place = self.performance.place
+            self._known[k] = (
+                attrs.evolve(earlier, vertices=place(self.cut.position - 1, earlier.vertices)),
+                attrs.evolve(later, vertices=place(self.cut.position, later.vertices)),
+            )
+        return self._known[k]
+
+
+def _window(graph: MotionGraph, performance: Performance, cut: Cut, seconds: float) -> tuple[int, int]:
+    """First and last offset from the cut: what both sequences have, and no nearer to another joint than half-way."""
+    half = max(1, round(seconds * graph.fps / 2))
+    positions = [0, *(other.position for other in performance.cuts if other.kind == "cut"), len(performance)]
+    earlier = max(position for position in positions if position < cut.position)
+    later = min((position for position in positions if position > cut.position), default=len(performance))
+    source = graph.analyses[graph.nodes[cut.source].sequence]
+    target = graph.analyses[graph.nodes[cut.target].sequence]
+    first = -min(half, (cut.position - earlier) // 2, cut.enter, _since_wrap(performance, cut))
+    room = min(len(source) - 2 - cut.leave, len(target) - 1 - cut.enter, _until_wrap(performance, cut))
+    last = min(half - 1, (later - cut.position) // 2 - 1, room)
+    return first, max(first, last)
+
+
+def _since_wrap(performance: Performance, cut: Cut) -> int:
+    """Frames before the cut that follow each other as filmed."""
+    frames, count = performance.frames, 0
+    while count < cut.position and frames[cut.position - 1 - count, 1] == cut.leave - count:
+        count += 1
+    return count
+
+
+def _until_wrap(performance: Performance, cut: Cut) -> int:
+    """Last offset after the cut up to which the frames follow each other as filmed."""
+    frames, count = performance.frames, 0
+    while cut.position + count < len(frames) and frames[cut.position + count, 1] == cut.enter + count:
+        count += 1
+    return count - 1
+
+
+def _in_between(pairs: _Pairs, found: dict[int, Registration], cut: Cut) -> dict[int, Shape]:
+    """Shapes with shares rising smoothly over the good frames."""
+    order = sorted(found)
+    shapes = {}
+    for rank, k in enumerate(order):
+        x = (rank + 1) / (len(order) + 1)
+        share = x * x * (3 - 2 * x)
+        source, target = pairs.shapes(k)
+        vertices = found[k].between(share)
+        colours = _mixed(found[k].between(1.0), source, target, share)
+        shapes[cut.position + k] = Shape(vertices, source.faces, colours)
+    return shapes
+
+
+def _mixed(reached: Array, source: Shape, target: Shape, share: float) -> Colours | None:
+    if source.colours is None or target.colours is None:
+        return source.colours
+    from scipy.spatial import cKDTree
+
+    nearest = cKDTree(target.vertices).query(reached)[1]
+    mixed = (1 - share) * source.colours.astype(float) + share * target.colours[nearest].astype(float)
+    return np.asarray(np.round(mixed), np.uint8)
+
+
+def _steps(pairs: _Pairs, shapes: dict[int, Shape], cut: Cut, first: int, last: int) -> float:
+    """Largest surface step from frame to frame through the window and one frame to either side."""
+
+    def at(k: int) -> Array:
+        position = cut.position + k
+        if position in shapes:
+            return shapes[position].vertices
+        return pairs.shapes(k)[0 if k < 0 else 1].vertices
+
+    return max(surface_step(at(k), at(k + 1)) for k in range(min(first, -1), max(last, 0)))
