@@ -86,7 +86,7 @@ def key_tracks(
         )
     noise = np.zeros(len(names))
     if denoise:
-        filled, noise = denoise_tracks(filled, cameras, cameras[0].depth(start), diagonal(vertices), observed)
+        filled, noise = denoise_tracks(filled, cameras, cameras[0].depth(start), diagonal(vertices), observed, trust)
     pixels = np.empty_like(filled)
     planted = np.zeros((count, len(names)), bool)
     places = np.full((count, len(names), 3), np.nan)

@@ -13,6 +13,8 @@ STILL = 0.0002
 HELD = 0.001
 ALONG = 0.003
 FLOOR = 0.001
+DOUBT = 20.0
+"""Pixels that a track without any confidence may be off; a half means a quarter of it."""
 NOISE_SHARE = 1.3 * 12
 """Noise alone shows as 6 spread^2 on each of two axes; 1.3 for what a short window's mean leaves above it."""
 
@@ -37,15 +39,24 @@ def pixel_noise(points: Array, cameras: CameraPath, observed: NDArray[np.bool_])
 
 
 def denoise_tracks(
-    pixels: Array, cameras: CameraPath, depths: Array, diagonal: float, observed: NDArray[np.bool_]
+    pixels: Array,
+    cameras: CameraPath,
+    depths: Array,
+    diagonal: float,
+    observed: NDArray[np.bool_],
+    confidence: Array | None = None,
 ) -> tuple[Array, Array]:
     """2D tracks (n, k, 2) freed of their jitter, and that jitter (k,), pixels.
 
-    They are smoothed in space, at the constant depths (k,) of frame 0, where the camera's shaking is gone.
+    They are smoothed in space, at the constant depths (k,) of frame 0, where the camera's shaking is gone. Frames of
+    low ``confidence`` (n, k) count as so much less exact, and are bridged where little speaks for them.
     """
     points = lift_points(cameras, pixels, np.broadcast_to(depths, pixels.shape[:2]))
     noise = pixel_noise(points, cameras, observed)
-    smooth = polish(points, cameras, rays_of(cameras, pixels)[1], diagonal, noise=noise, observed=observed)
+    spread = np.broadcast_to(noise, pixels.shape[:2])
+    if confidence is not None:
+        spread = np.hypot(spread, DOUBT * (1 - confidence) ** 2)
+    smooth = polish(points, cameras, rays_of(cameras, pixels)[1], diagonal, noise=spread, observed=observed)
     clean = project_points(cameras, smooth)
     return np.where(np.isfinite(clean), clean, pixels), noise
 
@@ -69,7 +80,7 @@ def polish(
     points : (n, k, 3) lifted key points, world.
     directions : (n, k, 3) ray directions of unit camera z.
     diagonal : the character's bounding-box diagonal, world units.
-    noise : (k,) standard deviation of each 2D track, pixels.
+    noise : (k,) or (n, k) standard deviation of each 2D track, pixels.
     planted : (n, k) frames in contact: there the point stands still.
     held : (n, k) frames whose points are known (frame 0, edits).
     observed : (n, k) frames in which the 2D track is present; in the others only smoothness speaks.
