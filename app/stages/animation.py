@@ -38,7 +38,8 @@ def base(document: Document, character: Character) -> Stage:
         *_tracks(document, paired),
         *_contacts(document, paired),
     )
-    inputs = (_vertices(character, paired), character.solve.method, character.solve.keep_volume, mirrors)
+    hidden = tuple(_hidden(track) for track in paired)
+    inputs = (_vertices(character, paired), character.solve.method, character.solve.keep_volume, mirrors, hidden)
     label = f"Moving {character.name}"
     blocked = NO_PAIRS if len(paired) < 3 else None
     seconds = 0.05 * (document.clip.frame_count if document.clip else 1)
@@ -107,6 +108,22 @@ def _in_sight(track: Track) -> int:
     return sum(not any(frame in gap for gap in track.occluded) for frame in track.clicks)
 
 
+def _hidden(track: Track) -> tuple[int, ...]:
+    """Frames in which the point is said to be hidden; where it is clicked all the same, its place is known."""
+    return tuple(
+        frame for gap in track.occluded for frame in range(max(gap.first, 1), gap.last + 1) if frame not in track.clicks
+    )
+
+
+def _seen(positions: Any, hidden: tuple[int, ...]) -> Any:
+    """What the tracker guessed behind something else is no observation: the body's motion bridges it."""
+    if not hidden:
+        return positions
+    seen = np.array(positions)
+    seen[[frame for frame in hidden if frame < len(seen)]] = np.nan
+    return seen
+
+
 def _vertices(character: Character, paired: list[Track]) -> tuple[tuple[str, int], ...]:
     return tuple((track.id, character.pairs[track.id]) for track in paired)
 
@@ -139,7 +156,7 @@ def _alignment(context: Context, inputs: tuple[Any, Any, Alignment], world: Worl
 def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter, *needs: Any) -> Any:
     from imitation.propagation import solve_base
 
-    paired, method, keep_volume, mirrors = inputs
+    paired, method, keep_volume, mirrors, hidden = inputs
     tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
     names = [name for name, _ in paired]
     deformer = context.media.deformer(aligned.vertices, aligned.faces, keep_volume)
@@ -147,7 +164,7 @@ def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter
         aligned.vertices,
         aligned.faces,
         world.cameras,
-        {name: track.positions for name, track in zip(names, tracks, strict=True)},
+        {name: _seen(track.positions, gaps) for name, track, gaps in zip(names, tracks, hidden, strict=True)},
         dict(paired),
         {name: _intervals(placed) for name, placed in zip(names, contacts, strict=True) if placed},
         method=method,

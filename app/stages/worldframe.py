@@ -15,6 +15,7 @@ from imitation import CameraPath
 from imitation.errors import InputError, NoSolution
 
 ASSUMED_DEPTH = 5.0
+ASSUMED_HEIGHT = 1.6
 FIRM = 0.5
 """A local ground that fewer of the points nearby speak for is not believed against the other contacts."""
 APART = 0.12
@@ -161,6 +162,13 @@ def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
         ground = plane_ground(choice.plane_points)
         return ground.plane, ground.name
     if len(path.points) < 3:
+        if choice.ground == "plane" and path.verdict in ("rotation", "static") and not choice.from_above:
+            # Without parallax any height fits the pictures: it sets the scale; a level ground gives feet depth.
+            from imitation.cameras import Plane
+
+            height = float(path.centres[:, 2].mean()) - ASSUMED_HEIGHT
+            plane = Plane(np.array([0.0, 0.0, 1.0]), height)
+            return plane, f"a level ground {ASSUMED_HEIGHT:g} m under a level camera is assumed"
         if choice.ground == "plane":
             raise InputError("There are no recovered points to lay a plane through: assume a constant depth instead.")
         return None, "no ground is known, a constant depth is assumed"

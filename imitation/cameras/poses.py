@@ -90,16 +90,19 @@ def resect(points: Array, pixels: Array, focal: float, centre: Array) -> tuple[P
         return None
     K = np.array([[focal, 0, centre[0]], [0, focal, centre[1]], [0, 0, 1.0]])
     cv2.setRNGSeed(0)
-    found, turn, shift, inliers = cv2.solvePnPRansac(
-        points,
-        pixels,
-        K,
-        None,
-        iterationsCount=300,
-        reprojectionError=NEAR,
-        confidence=0.9999,
-        flags=cv2.SOLVEPNP_SQPNP,
-    )
+    try:
+        found, turn, shift, inliers = cv2.solvePnPRansac(
+            points,
+            pixels,
+            K,
+            None,
+            iterationsCount=300,
+            reprojectionError=NEAR,
+            confidence=0.9999,
+            flags=cv2.SOLVEPNP_SQPNP,
+        )
+    except cv2.error:  # points all but in line: its null space is larger than it allows for
+        return None
     if not found or inliers is None or len(inliers) < FEWEST:
         return None
     chosen = inliers.ravel()
