@@ -53,6 +53,10 @@ class Shell(QMainWindow):
         self._autosave = QTimer(self)
         self._autosave.setInterval(AUTOSAVE)
         self._autosave.timeout.connect(self.files.autosave)
+        self._lanes = QTimer(self)
+        self._lanes.setSingleShot(True)
+        self._lanes.setInterval(60)
+        self._lanes.timeout.connect(self.show_lanes)
         self._refresh = QTimer(self)
         self._refresh.setSingleShot(True)
         self._refresh.setInterval(0)
@@ -93,7 +97,7 @@ class Shell(QMainWindow):
         for workspace in (self.video, self.character):
             workspace.hint.connect(self._hint)
             workspace.run_wanted.connect(lambda: self.do("propagate"))
-        self.character.lanes_changed.connect(self.refresh_soon)
+        self.character.lanes_changed.connect(lambda: self._lanes.isActive() or self._lanes.start())
         self.character.inspector.go.connect(self.navigator.go)
         self.character.inspector.on_release.connect(self._propagate_on_release)
         self.navigator.playback.playing_changed.connect(self.timeline.transport.show_playing)
@@ -179,16 +183,8 @@ class Shell(QMainWindow):
         project = self.project
         if project is None:
             return
-        if self.workspace == "video":
-            self.video.refresh()
-            lanes = video_lanes(project)
-        else:
-            self.character.blockSignals(True)
-            self.character.refresh()
-            self.character.blockSignals(False)
-            lanes = character_lanes(project, self.character.motion.solved(project.frame_count))
-        self.timeline.show_lanes(lanes, self.workspace)
-        self._fit_timeline()
+        self.in_sight().refresh()
+        self.show_lanes()
         document = project.document
         clicks = sum(len(track.clicks) for track in document.tracks)
         edits = sum(len(character.edits) for character in document.characters)
@@ -196,6 +192,18 @@ class Shell(QMainWindow):
         self.status.show_counts(counts)
         viewport = self.character.mesh.viewport
         self.status.device.setText(f"3D: {viewport.host.name}" if viewport is not None else "")
+
+    def show_lanes(self) -> None:
+        """Show the lanes of the workspace in sight."""
+        project = self.project
+        if project is None:
+            return
+        if self.workspace == "video":
+            lanes = video_lanes(project)
+        else:
+            lanes = character_lanes(project, self.character.motion.solved(project.frame_count))
+        self.timeline.show_lanes(lanes, self.workspace)
+        self._fit_timeline()
 
     def _resized_by_hand(self) -> None:
         self._sized = True
@@ -275,6 +283,7 @@ class Shell(QMainWindow):
             event.ignore()
             return
         self._refresh.stop()
+        self._lanes.stop()
         settings.settings().setValue("geometry", self.saveGeometry())
         self._close_project()
         self.calls.close()

@@ -47,7 +47,7 @@ def test_update(bench: Recorder, qapp: QApplication, subdivisions: int, asked: f
 
     def update() -> None:
         view.move_mesh(vertices)
-        qapp.processEvents()
+        view.repaint()
 
     def bare() -> None:
         view.scene.move_mesh(vertices)
@@ -78,7 +78,7 @@ def test_picking(bench: Recorder) -> None:
 def test_drag_and_gaps(
     bench: Recorder, open_shell: Callable[..., object], session: object, small_project: Path
 ) -> None:
-    """A vertex is dragged, released and spreads while the window ticks every 8 ms; wall clock, so only on a quiet machine."""
+    """A vertex is dragged, released and spreads while the window ticks every 8 ms (wall clock)."""
     shell = open_shell(session)
     shell.do("character")
     wait_for(lambda: shell.character.mesh.viewport is not None and len(shell.character.mesh.viewport.vertices))

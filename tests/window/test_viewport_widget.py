@@ -162,7 +162,7 @@ def test_mesh_lies_on_the_video_through_the_recovered_camera(view: Viewport) -> 
         view.look("camera")
         settle()
         view._draw(fine=True)
-        rows = view.host._rows[..., 3].astype(float)
+        rows = view.host._rows[::-1, :, 3].astype(float)
         scale = rows.shape[1] / 600
         ys, xs = np.mgrid[: rows.shape[0], : rows.shape[1]]
         seen = np.array([(rows * xs).sum(), (rows * ys).sum()]) / rows.sum()

@@ -22,8 +22,11 @@ Array = NDArray[np.float64]
 
 
 class Posing(QObject):
-    """Drives the live pose; ``changed`` says that another pose is to be shown, ``told`` a sentence with details."""
+    """Drives the live pose; ``moved`` says that the pose follows the mouse, ``changed`` that all is to be shown
+    anew, ``told`` a sentence with details.
+    """
 
+    moved = Signal()
     changed = Signal()
     told = Signal(str, str)
 
@@ -71,7 +74,7 @@ class Posing(QObject):
     def _posed(self, frame: int, vertices: Array) -> None:
         if self.before is not None and frame == self._frame:
             self.motion.held[frame] = vertices
-            self.changed.emit()
+            self.moved.emit()
 
     def _committed(self, character_id: str, frame: int, moves: Any, places: Any) -> None:
         self.before, self._frame = None, -1

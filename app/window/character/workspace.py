@@ -83,6 +83,7 @@ class CharacterWorkspace(QWidget):
         self.source.loaded.connect(self.refresh)
         self.posing = Posing(project, self.motion, self)
         self.posing.changed.connect(self.refresh)
+        self.posing.moved.connect(self.show_pose)
         self.posing.told.connect(self.mesh.errors.tell)
         self.inspector.unmove.connect(self.posing.delete_move)
         self.inspector.mute.connect(self.posing.mute)
@@ -135,6 +136,18 @@ class CharacterWorkspace(QWidget):
         if self.isVisible():
             self._show_mesh(character, vertices)
         self.lanes_changed.emit()
+
+    def show_pose(self) -> None:
+        """Show the pose of the frame and its handles, nothing else: it follows the mouse."""
+        character = self._character()
+        vertices = self.motion.vertices(self.frame)
+        viewport = self.mesh.viewport
+        if self.project is None or character is None or vertices is None or viewport is None or not self.isVisible():
+            return
+        if len(vertices) == len(viewport.vertices):
+            viewport.move_mesh(vertices)
+            before = self.posing.before if self.posing is not None else None
+            self.mesh.show_handles(handles(self.project, character, vertices, before))
 
     def showEvent(self, event: Any) -> None:
         """Bring the 3D view up to date when the workspace comes into sight."""
@@ -194,9 +207,8 @@ class CharacterWorkspace(QWidget):
         if frame is None:
             return
         if frame == self.frame:
-            self.refresh()
-        else:
-            self.lanes_changed.emit()
+            self.show_pose()
+        self.lanes_changed.emit()
 
     # the mouse ---------------------------------------------------------------------------------------------------
 

@@ -23,9 +23,8 @@ def pick_vertex(
     depth = local[:, 2]
     with np.errstate(divide="ignore", invalid="ignore"):
         pixels = image[:, :2] / image[:, 2:]
-        away = np.hypot(pixels[:, 0] - place[0], pixels[:, 1] - place[1])
-    away = np.where(depth > 0, away, np.inf)
-    found = np.flatnonzero(away <= reach)
+        away = (pixels[:, 0] - place[0]) ** 2 + (pixels[:, 1] - place[1]) ** 2
+    found = np.flatnonzero((away <= reach**2) & (depth > 0))
     if not len(found):
         return None
     found = found[np.lexsort((depth[found], away[found]))]
@@ -39,11 +38,13 @@ def pick_vertex(
 def _triangles_near(
     pixels: Array, depth: Array, faces: NDArray[np.int32], place: tuple[float, float], reach: float
 ) -> NDArray[np.int32]:
-    """The triangles in front of the camera whose box touches the circle."""
-    x, y = pixels[:, 0][faces], pixels[:, 1][faces]
+    """The triangles in front of the camera that may touch the circle's box."""
+    x, y = pixels[:, 0], pixels[:, 1]
     with np.errstate(invalid="ignore"):
-        keep = (x.min(1) <= place[0] + reach) & (x.max(1) >= place[0] - reach)
-        keep &= (y.min(1) <= place[1] + reach) & (y.max(1) >= place[1] - reach)
+        outside = (x < place[0] - reach) | ((x > place[0] + reach).astype(np.uint8) << 1)
+        outside |= ((y < place[1] - reach).astype(np.uint8) << 2) | ((y > place[1] + reach).astype(np.uint8) << 3)
+    # A triangle misses the box for sure where all its corners lie beyond one and the same side.
+    keep = (outside[faces[:, 0]] & outside[faces[:, 1]] & outside[faces[:, 2]]) == 0
     near = faces[keep]
     kept: NDArray[np.int32] = near[(depth[near] > 0).all(1)]
     return kept

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QImage, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -49,10 +49,10 @@ class RasterHost(QWidget):
         window.Render()
         window.GetRGBACharPixelData(0, 0, size[0] - 1, size[1] - 1, 0, self._pixels)
         rows = vtk_to_numpy(self._pixels).reshape(size[1], size[0], 4)
-        self._rows = np.ascontiguousarray(rows[::-1])
-        self._picture = QImage(
-            self._rows.data, size[0], size[1], 4 * size[0], QImage.Format.Format_RGBA8888_Premultiplied
-        )
+        self._rows = rows
+        # The rows come from the bottom up; they are turned round where they are painted, which costs nothing.
+        self._picture = QImage(rows.data, size[0], size[1], 4 * size[0], QImage.Format.Format_RGBA8888_Premultiplied)
+        self._picture = self._picture.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
         self.renders += 1
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -60,8 +60,9 @@ class RasterHost(QWidget):
         painter = QPainter(self)
         self.background.paint(painter, self.width(), self.height())
         painter.setOpacity(self.background.mesh_opacity)
-        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-        painter.drawImage(QRectF(0, 0, self.width(), self.height()), self._picture)
+        at_rest = self._picture.width() > self.width() * self.devicePixelRatioF() + 1
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, at_rest)
+        painter.drawImage(QRectF(0, 0, self.width(), self.height()), self._picture.flipped(Qt.Orientation.Vertical))
         painter.end()
 
     def finish(self) -> None:
