@@ -62,19 +62,21 @@ class _Bar(Silent):
 
 
 class _PlainBar:
-    """A line when the step changes, one a second at most, or every ten seconds within a step."""
+    """A line when a step begins, one a second at most, and one every ten seconds while nothing new begins."""
 
     def __init__(self, label: str) -> None:
-        self._label, self._last, self._time = label, "", 0.0
+        self._label, self._time = label, 0.0
+        self._said: set[str] = set()
         self._lock = threading.Lock()
 
     def __call__(self, fraction: float, label: str = "") -> None:
         label = label or self._label
         with self._lock:
             now = time.monotonic()
-            if now - self._time < (10 if label == self._last else 1):
+            if now - self._time < (10 if label in self._said else 1):
                 return
-            self._last, self._time = label, now
+            self._said.add(label)
+            self._time = now
             print(f"{label} ... {100 * fraction:.0f} %", file=sys.stderr, flush=True)
 
 
