@@ -175,9 +175,10 @@ class Viewport(QWidget):
         self.surface.update()
 
     def _draw(self, *, fine: bool) -> None:
+        lens = self.lens()
         behind = self.picture if self.through_camera else None
         self.host.background.show(behind, self.view, mesh_opacity=self.mesh_opacity if behind is not None else 1.0)
-        self.host.draw(self.lens(), fine=fine)
+        self.host.draw(lens, fine=fine)
         self._dirty = False
 
     def paintEvent(self, event: QPaintEvent) -> None:
