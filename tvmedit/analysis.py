@@ -23,6 +23,7 @@ from tvmedit.features import (
     hann_taps,
     yaw_free_atom_distances,
 )
+from tvmedit.features.heading import turning
 from tvmedit.features.measure import foot_cue, surface_samples
 from tvmedit.features.paper import ANGLE_BIN
 from tvmedit.structure import Structure, parse_structure
@@ -140,7 +141,7 @@ def analyse(
         raise InputError("The sequence has no frames: give at least one mesh.")
     features, robust = pass_.features()
     centres = np.array(pass_.robust.centres)
-    headings = facing(pass_.foot_cues(robust.height), centres, robust.height, fps, front)
+    headings = facing(pass_.foot_cues(robust.height), centres, robust.height, fps, front, turning(robust.histograms))
     if method == "paper":
         distances = frame_distances(features, progress=comparing)
         atoms = atom_distances(distances)

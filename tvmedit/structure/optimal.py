@@ -23,6 +23,8 @@ SHORTEST_PERIOD = 0.5
 LONGEST_PERIOD = 5.0
 STILL = 0.3
 """Median distances below this are a body that hardly moves (Hellinger distance of the robust features)."""
+MOTIONLESS = 0.4
+"""Below so many times that the sequence is one motion that does not repeat."""
 LENGTH_SPREAD = 0.15
 
 
@@ -46,7 +48,10 @@ def parse_optimal(
         novelty = 1e-6
     penalty = PENALTY_SECONDS * fps * novelty / sensitivity
     sums = np.zeros((0, n + 1)) if n < 2 * shortest else repeat_costs(atoms, shortest, longest, 2.0 * novelty)
-    if boundaries is None:
+    if boundaries is None and median < MOTIONLESS * still and not force_cyclic:
+        # Posture and noise must not be taken for motion.
+        starts, periods = np.zeros(1, np.int64), np.zeros(1, np.int64)
+    elif boundaries is None:
         starts, periods = best_segments(sums, shortest, novelty, penalty, force_cyclic)
     else:
         starts = _given_starts(boundaries, n)

@@ -1,0 +1,162 @@
+"""Database, transitions, pruning, composition and smooth output of a small performance."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+import tvmedit
+from imitation import InputError
+from resources.performer import Capture
+from tvmedit.cuts import GroundMove, align_frames
+from tvmedit.features.measure import surface_samples
+from tvmedit.graph.pruning import prune_absolute, prune_printed
+
+
+def test_eq_13_and_14_prune_against_the_mean_of_the_out_edges() -> None:
+    """An edge of mu times the mean goes; of two nodes the only edge is its own mean."""
+    weights = np.array([[np.inf, 1, 3], [2, np.inf, 2], [1, 5, np.inf]])
+    kept = prune_printed(weights, 1.0)
+    assert np.isfinite(kept).tolist() == [[False, True, False], [False, False, False], [True, False, False]]
+    two = np.array([[np.inf, 1], [2, np.inf]])
+    assert not np.isfinite(prune_printed(two, 1.0)).any()
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_absolute_pruning_keeps_all_reachable_by_the_least_bottleneck(seed: int) -> None:
+    """Whatever the limit, every best path of the complete graph keeps its cost; nothing over the limit is unmarked."""
+    weights = np.random.default_rng(seed).random((7, 7))
+    np.fill_diagonal(weights, np.inf)
+    kept, poor = prune_absolute(weights, 0.2)
+    for a in range(7):
+        for b in range(7):
+            if a != b:
+                full, thin = tvmedit.best_path(weights, a, b), tvmedit.best_path(kept, a, b)
+                cost = max(weights[i, j] for i, j in itertools.pairwise(full))
+                thin_cost = max(weights[i, j] for i, j in itertools.pairwise(thin))
+                assert thin_cost == pytest.approx(max(cost, 0.0)) or thin_cost < 0.2
+    assert (poor == (np.isfinite(kept) & (weights >= 0.2))).all()
+
+
+def test_mu_prunes_live_and_monotonically(graph: tvmedit.MotionGraph) -> None:
+    """More mu, more edges; the complete weights stay; back at the first mu, the same graph."""
+    counts = [np.isfinite(graph.pruned(mu).weights).sum() for mu in (0.1, 0.9, 3.0)]
+    assert counts == sorted(counts)
+    assert np.array_equal(graph.pruned(0.1).pruned(0.9).weights, graph.weights)
+
+
+def test_the_users_own_texton_is_taken(analysis: tvmedit.Analysis) -> None:
+    """By its number in the cluster, or by its frames; one that is not there is an error."""
+    cluster = analysis.structure.clusters[2]
+    graph = tvmedit.motion_graph([analysis], textons={(0, 2): 1})
+    assert (graph.nodes[2].first, graph.nodes[2].last) == cluster.textons[1]
+    first, last = cluster.textons[0]
+    assert len(tvmedit.motion_graph([analysis], textons=[(0, first, last)]).nodes) == 1
+    with pytest.raises(InputError, match="no texton 99"):
+        tvmedit.motion_graph([analysis], textons={(0, 0): 99})
+
+
+def test_two_sequences_join_and_unlike_ones_are_refused(capture: Capture, analysis: tvmedit.Analysis) -> None:
+    """Nodes of both; another rate or another unit is refused with what to do."""
+    assert len(tvmedit.motion_graph([analysis, analysis]).nodes) == 6
+    frames = [capture.mesh(k)[:2] for k in range(12)]
+    with pytest.raises(InputError, match="frames a second"):
+        tvmedit.motion_graph([analysis, tvmedit.analyse(frames, fps=30)])
+    with pytest.raises(InputError, match="one unit"):
+        tvmedit.motion_graph([analysis, tvmedit.analyse([(1000 * v, f) for v, f in frames], fps=15)])
+
+
+def test_two_node_graphs_work_in_both_modes(analysis: tvmedit.Analysis) -> None:
+    """As printed the only edge is pruned and the report says at which mu it comes back; by default it stays."""
+    nodes = [(0, *analysis.structure.clusters[k].textons[0]) for k in (0, 1)]
+    assert tvmedit.compose(tvmedit.motion_graph([analysis], textons=nodes), [0, 1], align=False).path == (0, 1)
+    printed = tvmedit.motion_graph([analysis], textons=nodes, method="paper")
+    with pytest.raises(tvmedit.Unreachable) as caught:
+        tvmedit.compose(printed, [0, 1], align=False)
+    assert caught.value.mu == pytest.approx(1.0)
+    assert caught.value.edges == ((0, 1),)
+    assert tvmedit.compose(printed.pruned(1.001), [0, 1], align=False).path == (0, 1)
+
+
+def test_a_performance_plays_every_frame_and_cuts_where_it_says(graph: tvmedit.MotionGraph) -> None:
+    """Frames follow each other everywhere but at the joints, and each motion is whole."""
+    performance = tvmedit.compose(graph, [0, 2, 1], repeats={1: 2}, align=False)
+    joints = {cut.position: cut for cut in performance.cuts}
+    frames = performance.frames[:, 1]
+    for position in range(1, len(performance)):
+        if position in joints:
+            assert (frames[position - 1], frames[position]) == (joints[position].leave, joints[position].enter)
+        else:
+            assert frames[position] == frames[position - 1] + 1
+    for number in set(performance.path):
+        node = graph.nodes[number]
+        assert set(frames[performance.nodes == number]) == set(range(node.first, node.last + 1))
+    assert [performance.path[k] for k in performance.keys] == [0, 2, 1]
+
+
+def test_lengths_loops_and_alternatives(graph: tvmedit.MotionGraph) -> None:
+    """A length is met or explained, a loop closes, alternatives come in order."""
+    performance = tvmedit.compose(graph, [0, 2], length=200, align=False)
+    assert len(performance) == 200 or performance.note
+    loop = tvmedit.compose(graph, [0, 2], loop=True, align=False)
+    assert loop.cuts[-1].kind == "loop"
+    assert loop.cuts[-1].enter == loop.frames[0, 1]
+    several = tvmedit.compose(graph, [0, 2], alternatives=1, align=False)
+    assert several.cost <= min((other.cost for other in several.alternatives), default=np.inf)
+
+
+def test_bad_wishes_are_refused(graph: tvmedit.MotionGraph) -> None:
+    """No keys, unknown keys, forbidden keys, no length."""
+    for keys, options in (
+        ([], {}),
+        ([99], {}),
+        ([0], {"forbidden": [0]}),
+        ([0], {"length": 0}),
+        ([0], {"repeats": {5: 2}}),
+    ):
+        with pytest.raises(InputError):
+            tvmedit.compose(graph, keys, align=False, **options)
+
+
+def test_alignment_recovers_a_known_move(capture: Capture) -> None:
+    """Two meshes of one pose, moved: yaw within a degree, the pelvis within 15 mm."""
+    true = GroundMove(0.7, 1.2, -0.5)
+    windows = [[surface_samples(*capture.mesh(40 + k, copy=c)[:2], 600) for k in (-1, 0, 1)] for c in (1, 2)]
+    found = align_frames(windows[0], [true.apply(points) for points in windows[1]], yaw=0.9)
+    pelvis = capture.joints[40, 0]
+    assert abs(np.degrees(found.yaw - true.yaw)) < 1
+    assert np.linalg.norm(found.apply(pelvis) - true.apply(pelvis)) < 0.015
+    undone = GroundMove(-found.yaw, 0, 0).after(GroundMove(0, -found.x, -found.y)).after(found)
+    assert (undone.yaw, undone.x, undone.y) == pytest.approx((0, 0, 0), abs=1e-9)
+
+
+def test_a_placed_walk_walks_on(capture: Capture, graph: tvmedit.MotionGraph) -> None:
+    """Three rounds of the walk travel three times as far as one, and no joint jumps."""
+    walk = max(range(len(graph.nodes)), key=lambda k: graph.intensities[k])
+    performance = tvmedit.compose(graph, [walk], repeats=[3])
+    joints = np.array([performance.place(i, capture.joints[f]) for i, (_, f) in enumerate(performance.frames)])
+    steps = np.linalg.norm(np.diff(joints, axis=0), axis=2).mean(axis=1)
+    at = [cut.position - 1 for cut in performance.cuts]
+    assert len(at) == 2
+    assert steps[at].max() < 1.2 * np.delete(steps, at).max()
+    seams = tvmedit.seam_scores(graph, performance)
+    assert max(seam.score for seam in seams) < 1.2
+    assert all(seam.before > seam.after for seam in seams)
+
+
+@pytest.mark.slow
+def test_a_cut_is_blended_and_a_broken_one_refused(capture: Capture, graph: tvmedit.MotionGraph) -> None:
+    """Frames in between lie between both clips with mixed colours; poses that cannot be joined are left as they are."""
+    performance = tvmedit.compose(graph, [0, 1])
+    cut = next(cut for cut in performance.cuts if cut.kind == "cut")
+    blend = tvmedit.blend_cut(graph, performance, cut, lambda _, frame: capture.mesh(frame))
+    assert len(blend.shapes) >= 3 or blend.reason
+    for position, shape in blend.shapes.items():
+        assert np.isfinite(shape.vertices).all()
+        assert shape.colours is not None
+        assert tvmedit.performance_shape(graph, performance, position, lambda _, f: capture.mesh(f), [blend]) is shape
+    meshes = [capture.mesh(frame)[:2] for frame in (0, int(capture.boundaries[0]) - 15)]
+    far = tvmedit.register(meshes[0], (meshes[1][0] + [0.9, 0, 0], meshes[1][1]), height=1.75, edge=0.024, iterations=8)
+    assert far.reason
