@@ -26,19 +26,19 @@ TARGET = ROOT / "docs" / "screenshots"
 SIZES = ((1440, 900), (1920, 1080))
 
 
-def solved_sample(folder: Path) -> Path:
-    """The sample as a solved project in a folder; made where it is not there."""
-    place = folder / "Sample.motionwright"
+def solved_sample(place: Path) -> Path:
+    """The sample as a solved project at a place; what is there and up to date is not solved again."""
     if not place.exists():
-        print("solving the sample, once ...")
         session = Session.new(place)
         fill_with_sample(session)
         session.save()
-        for character in session.document.characters[:1]:
-            session.result(session.stages.animation(character.id))
-        for track in session.document.tracks:
-            session.result(session.stages.track(track.id))
         session.close()
+    session = Session.open(place)
+    print("solving what is missing ...", flush=True)
+    session.result(session.stages.animation(session.document.characters[0].id))
+    for track in session.document.tracks:
+        session.result(session.stages.track(track.id))
+    session.close()
     return place
 
 
@@ -75,7 +75,7 @@ def main() -> None:
         shell.show()
         camera = Camera(shell, application)
         camera.take("welcome")
-        place = Path(sys.argv[1]) if len(sys.argv) > 1 else solved_sample(ROOT / "build" / "screenshots")
+        place = solved_sample(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "build" / "Sample.motionwright")
         shell.open_session(Session.open(place))
         camera.live(20, lambda: not shell.video.canvas.picture.isNull())
         _video(shell, camera)
