@@ -18,7 +18,7 @@ ASSUMED_DEPTH = 5.0
 ASSUMED_HEIGHT = 1.6
 FIRM = 0.5
 """A local ground that fewer of the points nearby speak for is not believed against the other contacts."""
-APART = 0.12
+APART = 0.08
 """How far, of its depth, a foot may be from the others before it is taken for misplaced."""
 
 
