@@ -17,6 +17,8 @@ WINDOW = 5
 """Anderson's mixing looks back this many steps."""
 FARTHEST = 0.02
 """No vertex goes farther than this along the slow directions in one step: beyond, they bend."""
+SLACK = 5.0
+"""The step that includes the slow directions' rest may be this much longer than the tolerance at the end."""
 SLOW_FROM = 3
 """The first step along the slow directions: before, the rotations do not yet follow the handles."""
 RESTART = 4.0
@@ -260,17 +262,40 @@ def one_step(pose, turn, mesh, constraints):
     return new
 
 
+@njit(fastmath={"reassoc", "contract"}, **OPTIONS)
+def dot(a, b):
+    """Scalar product of two vectors."""
+    total = 0.0
+    for i in range(len(a)):
+        total += a[i] * b[i]
+    return total
+
+
+@njit(fastmath={"reassoc", "contract"}, **OPTIONS)
+def distance(a, b):
+    """Squared distance of two poses (m, 3)."""
+    total = 0.0
+    a, b = a.ravel(), b.ravel()
+    for i in range(len(a)):
+        total += (a[i] - b[i]) ** 2
+    return total
+
+
 @njit(**OPTIONS)
 def mix(pose, new, history, gram, side, weight, state):
-    """Anderson's mixing (type II) of the last steps, in place in ``pose``; state = (count, slot, best, made)."""
-    last_new, last_step, new_change, step_change = history
-    values, steps, before = new.ravel(), last_step.ravel(), last_new.ravel()
-    place = pose.ravel()
+    """Anderson's mixing (type II) of the last steps, in place in ``pose``; state as in ``relax``."""
+    last_new, step, new_change, step_change = history
+    values, place, before = new.ravel(), pose.ravel(), last_new.ravel()
     size = len(place)
-    squared = 0.0
-    for i in range(size):
-        squared += (values[i] - place[i]) ** 2
     count, slot = int(state[0]), int(state[1])
+    mine, change = step_change[slot], new_change[slot]
+    for i in range(size):
+        now = values[i] - place[i]
+        mine[i] = now - step[i]
+        change[i] = values[i] - before[i]
+        step[i] = now
+        before[i] = values[i]
+    squared = dot(step, step)
     if squared > RESTART * state[2]:
         count, slot = 0, 0
         state[2] = squared
@@ -278,35 +303,27 @@ def mix(pose, new, history, gram, side, weight, state):
     else:
         state[2] = min(state[2], squared)
         if state[3] > 0:
-            mine, change = step_change[slot], new_change[slot]
             count = min(count + 1, WINDOW)
-            for i in range(size):
-                change[i] = values[i] - before[i]
-                mine[i] = (values[i] - place[i]) - steps[i]
             for h in range(count):
-                dot = 0.0
-                theirs = step_change[h]
-                for i in range(size):
-                    dot += mine[i] * theirs[i]
-                gram[slot, h] = dot
-                gram[h, slot] = dot
+                gram[slot, h] = dot(mine, step_change[h])
+                gram[h, slot] = gram[slot, h]
             slot = (slot + 1) % WINDOW
     for h in range(count):
-        dot = 0.0
-        theirs = step_change[h]
-        for i in range(size):
-            dot += theirs[i] * (values[i] - place[i])
-        side[h] = dot
+        side[h] = dot(step_change[h], step)
     weight[:] = 0.0
     weight[:count] = mixing(gram, side, count)
-    for i in range(size):
-        before[i] = values[i]
-        steps[i] = values[i] - place[i]
-        place[i] = values[i]
-    for h in range(count):
-        share, change = weight[h], new_change[h]
+    if count == WINDOW:
+        a, b, c, d, e = weight[0], weight[1], weight[2], weight[3], weight[4]
+        v, w, x, y, z = new_change[0], new_change[1], new_change[2], new_change[3], new_change[4]
         for i in range(size):
-            place[i] -= share * change[i]
+            place[i] = values[i] - a * v[i] - b * w[i] - c * x[i] - d * y[i] - e * z[i]
+    else:
+        for i in range(size):
+            place[i] = values[i]
+        for h in range(count):
+            share, change = weight[h], new_change[h]
+            for i in range(size):
+                place[i] -= share * change[i]
     state[0], state[1], state[3] = count, slot, state[3] + 1
 
 
@@ -322,12 +339,13 @@ def relax(pose, turn, mesh, constraints, modes, iterations, tolerance, least):
     size = len(pose)
     spread, new = np.empty((size, 3)), np.empty((size, 3))
     history = (
-        np.empty((size, 3)),
-        np.empty((size, 3)),
+        np.zeros((size, 3)),
+        np.zeros(size * 3),
         np.empty((WINDOW, size * 3)),
         np.empty((WINDOW, size * 3)),
     )
     gram, side, weight = np.zeros((WINDOW, WINDOW)), np.zeros(WINDOW), np.zeros(WINDOW)
+    # columns kept, next to be replaced, smallest squared step, mixings done, times started again
     state = np.array([0.0, 0.0, np.inf, 0.0, 0.0])
     slow = len(modes[2]) > 0
     step, made = 0.0, 0
@@ -335,14 +353,12 @@ def relax(pose, turn, mesh, constraints, modes, iterations, tolerance, least):
         local_step(pose, turn, start, other, edge, detail, spread, new)
         apply_inverse(ground, shifted, area, total, coupling, spread, new)
         constrain(new, response, handle, owner, row, target, matrix, inverse)
+        step = np.sqrt(distance(new, pose) / size)
+        whole = step
         if slow and made >= SLOW_FROM and state[4] < 3:
             correct_slow(pose, new, turn, modes)
-        squared = 0.0
-        for i in range(size):
-            for axis in range(3):
-                squared += (new[i, axis] - pose[i, axis]) ** 2
-        step = np.sqrt(squared / size)
-        if made == iterations or (step <= tolerance and made >= least):
+            whole = np.sqrt(distance(new, pose) / size)
+        if made == iterations or (made >= least and step <= tolerance and whole <= SLACK * tolerance):
             break
         mix(pose, new, history, gram, side, weight, state)
     for i in range(size):

@@ -19,7 +19,7 @@ from imitation.deformation.system import SmallSystem, System
 from imitation.geometry.projection import Array
 
 COUNT = 24
-KRYLOV = 80
+KRYLOV = 72
 SMALL = NDArray[np.float32]
 
 
@@ -69,8 +69,7 @@ def slow_modes(system: System, rows: Rows, rotation: Array, count: int = COUNT, 
     basis, after, loads = np.empty((krylov, 3 * size)), np.empty((krylov, 3 * size)), np.empty((krylov, 3 * size))
     vector = step(np.random.default_rng(0).normal(size=(size, 3)))
     for made in range(krylov):
-        for _ in range(2):
-            vector = vector - (basis[:made].T @ (loads[:made] @ vector.ravel())).reshape(size, 3)
+        vector = vector - (basis[:made].T @ (loads[:made] @ vector.ravel())).reshape(size, 3)
         load = system.apply(vector)
         norm = np.sqrt(max(float(np.vdot(vector, load)), 0.0))
         if norm < 1e-12:
@@ -107,7 +106,7 @@ def _invariant(projected: Array, count: int) -> tuple[Array, Array]:
     order = np.argsort(-values.real, kind="stable")
     real = values.real[order]
     # Cut in the widest gap near the wanted number, so that no cluster and no conjugate pair is cut in two.
-    low = max(1, count - 8)
+    low = max(1, count - 4)
     cut = low + int(np.argmax(real[low - 1 : count] - real[low : count + 1]))
     chosen = [k for k in order[:cut] if values[k].imag >= 0]
     bases = []

@@ -33,19 +33,19 @@ def run(
 ) -> Iterator[Pose]:
     """Solve the frames in order, each to the tolerance.
 
-    A frame begins at the straight continuation of the two before it, so that all frames lag alike and little. The
+    A frame begins at the continuation of those before it, so that all frames lag alike and little. The
     slow directions are shared by frames with the same handles.
     """
     previous: ArrayLike | Pose | None = start
-    earlier: Pose | None = None
+    before: list[Pose] = []
     modes: Modes | None = None
     handles: bytes | None = None
     age = 0
     for asked in frames:
         rows = build_rows(deformer.mesh, asked)
         begin = previous
-        if isinstance(previous, Pose) and earlier is not None and iterations is None:
-            begin = _continued(deformer, rows, earlier, previous)
+        if before and iterations is None and len(rows.handles):
+            begin = _continued(deformer, rows, before)
         same = rows.handles.tobytes() + rows.owner.tobytes()
         if same != handles:
             modes, handles, age = None, same, 0
@@ -59,14 +59,22 @@ def run(
         age += 1
         if pose.iterations > MANY and age > PATIENCE:
             modes, age = None, 0
-        earlier = previous if isinstance(previous, Pose) else None
         previous = pose
+        before = [*before[-2:], pose]
         yield pose
 
 
-def _continued(deformer: Deformer, rows: Rows, earlier: Pose, previous: Pose) -> Pose:
-    """The straight continuation of two poses, or the later one where that is nearer to what is asked (noise)."""
+def _continued(deformer: Deformer, rows: Rows, before: list[Pose]) -> Pose:
+    """The last pose, or its straight or parabolic continuation, whichever is nearest to what is asked.
+
+    Noise makes the continuations worse than the last pose, smooth motion makes them much better.
+    """
     place = deformer.system.place[rows.handles]
-    ahead = 2 * previous.inner - earlier.inner
-    far = [float(np.square(residuals(rows, inner[place])).sum()) for inner in (ahead, previous.inner)]
-    return attrs.evolve(previous, inner=ahead) if far[0] < far[1] else previous
+    last = before[-1].inner
+    guesses = [last]
+    if len(before) > 1:
+        guesses.append(2 * last - before[-2].inner)
+    if len(before) > 2:
+        guesses.append(3 * (last - before[-2].inner) + before[-3].inner)
+    far = [float(np.square(residuals(rows, guess[place])).sum()) for guess in guesses]
+    return attrs.evolve(before[-1], inner=guesses[int(np.argmin(far))])

@@ -31,6 +31,11 @@ def behind(rows: Rows, handles: Array) -> NDArray[np.bool_]:
 
 def rigid_fit(rows: Rows, handles: Array, rotation: Array, translation: Array) -> tuple[Array, Array, float]:
     """Best rigid motion of handles (k, 3) to the rows from one start, by damped Gauss-Newton; with its cost."""
+    if rows.pinned.all():
+        turn, shift = kabsch(handles @ rotation.T + translation, rows.place)
+        rotation, translation = turn @ rotation, turn @ translation + shift
+        error = residuals(rows, handles @ rotation.T + translation)
+        return rotation, translation, float(error @ error)
     weight = np.sqrt(rows.softness)
     damping = 1e-4
     error = residuals(rows, handles @ rotation.T + translation)
@@ -120,6 +125,10 @@ def complete(rows: Rows, handles: Array) -> tuple[Rows, tuple[str, ...]]:
     A direction in which nothing holds the mesh (a lone ray, parallel rays) gets a weak row that keeps the first handle
     where it begins; an open turn is left to the rotations of the start, which the iteration keeps.
     """
+    if rows.pinned.all() and len(handles) > 2:
+        spread = np.linalg.svd(handles - handles.mean(axis=0), compute_uv=False)
+        if spread[1] > 1e-6 * spread[0]:
+            return rows, ()
     notes = []
     values, axes = np.linalg.eigh(rows.direction.T @ rows.direction)
     arm = (handles - handles.mean(axis=0)) / max(float(np.abs(handles - handles.mean(axis=0)).max()), 1e-12)

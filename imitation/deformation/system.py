@@ -13,6 +13,9 @@ from imitation.errors import InputError
 from imitation.geometry import PreparedMesh
 from imitation.geometry.projection import Array
 
+KEPT = 4
+"""Small systems kept; a frame of rays has its own, and it is soon dropped."""
+
 
 class System:
     """Matrix ``Q = L M^-1 (L + c M)``, c = a / S, of a prepared mesh, factored once.
@@ -57,6 +60,7 @@ class System:
         # Without a stretch term the second factor is the Laplacian's own.
         self._shifted = factorise(shifted[self.order][:, self.order]) if coupling > 0 else self._ground
         self._columns: dict[int, Array] = {}
+        self._small: dict[tuple[bytes, ...], SmallSystem] = {}
         self.arrays = self._arrays()
 
     def _arrays(self) -> tuple[Any, ...]:
@@ -92,8 +96,13 @@ class System:
         return result
 
     def small(self, rows: Rows) -> SmallSystem:
-        """The dense system of one set of rows."""
-        return SmallSystem(self, rows)
+        """The dense system of one set of rows; the last few are kept, for frames of points share them."""
+        key = rows.signature
+        if key not in self._small:
+            if len(self._small) >= KEPT:
+                self._small.pop(next(iter(self._small)))
+            self._small[key] = SmallSystem(self, rows)
+        return self._small[key]
 
 
 class SmallSystem:
