@@ -40,7 +40,7 @@ def turning(histograms: NDArray[np.float32], most: float = MOST_TURN) -> Array:
     angles = np.linspace(-most, most, 61)
     # A turn by an angle multiplies harmonic k by exp(-i k angle).
     correlation = (cross @ np.exp(1j * np.outer(np.arange(cross.shape[1]), angles))).real
-    return np.r_[0.0, np.cumsum(angles[correlation.argmax(axis=1)])]
+    return np.asarray(np.r_[0.0, np.cumsum(angles[correlation.argmax(axis=1)])])
 
 
 def facing(
@@ -62,7 +62,7 @@ def facing(
     front : float, optional
         The user's word on frame 0, radians: all headings are turned by the same angle to agree with it.
     turns : (n,) float64, optional
-        What ``turning`` gives: carries headings over frames without a cue. It drifts, and is used over short times only.
+        What ``turning`` gives: carries headings over frames without a cue. It drifts: used over short times only.
 
     Returns
     -------

@@ -57,7 +57,7 @@ def parse_optimal(
         starts = _given_starts(boundaries, n)
         stops = [*starts[1:], n]
         spans = zip(starts, stops, strict=True)
-        periods = np.array([best_period(sums, shortest, a, b, novelty, force_cyclic) for a, b in spans])
+        periods = np.array([best_period(sums, shortest, int(a), int(b), novelty, force_cyclic) for a, b in spans])
     clusters = _clusters(atoms, starts, periods, novelty)
     if boundaries is None:
         clusters = _merged(atoms, clusters, novelty)
