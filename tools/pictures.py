@@ -24,14 +24,14 @@ def main() -> None:
     with closing(Session.open(project)) as session:
         filmed = session.frames()[FRAME]
         width = filmed.shape[1]
-        shown = {each.name: still(session, each.id, FRAME) for each in session.document.characters}
+        shown = {each.name: still(session, each.id, FRAME, ()) for each in session.document.characters}
     over = {name: picture[:, :width] for name, picture in shown.items()}
     tiles = [
         label(filmed, "filmed by hand"),
         *(label(np.ascontiguousarray(picture), f"{name}: moved by the film") for name, picture in over.items()),
         label(np.ascontiguousarray(shown["fox"][:, -width:]), "fox from the side"),
     ]
-    tiles = [cv2.resize(tile, (720, 405), interpolation=cv2.INTER_AREA) for tile in tiles]
+    tiles = [cv2.resize(tile, (640, 360), interpolation=cv2.INTER_AREA) for tile in tiles]
     target = Path("docs/pictures/demo.png")
     target.parent.mkdir(exist_ok=True)
     write_image(target, side_by_side(tiles, columns=2))

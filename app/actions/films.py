@@ -100,14 +100,14 @@ def compare_film(
     write_video(target, pictures(), rate(session), count=count)
 
 
-def still(session: Session, character_id: str, frame: int) -> Picture:
+def still(session: Session, character_id: str, frame: int, labels: Sequence[str] = ("camera", "side")) -> Picture:
     """Give one picture of a character over its frame and from the side."""
     moving = _Moving.of(session, character_id)
     from imitation.rendering import side_by_side
 
     over = _over_video(session, [moving], 0.0, False, range(frame, frame + 1))
     side = _from_side(session, moving, moving.vertices, range(frame, frame + 1))
-    return side_by_side([next(iter(over)), next(iter(side))], ("camera", "side"))
+    return side_by_side([next(iter(over)), next(iter(side))], labels)
 
 
 class _Moving:
