@@ -16,6 +16,8 @@ CORNERS = 900
 WINDOW = 15
 LEVELS = 4
 ROUND_TRIP = 0.5  # pixels: forward and back again
+SETTLE = 15  # pixels: window in which a corner is compared with its first picture
+STRAY = 1.0  # pixels: a first picture that fits farther away does not fit
 
 
 @attrs.frozen(eq=False)
@@ -84,12 +86,82 @@ def _inside(pixels: NDArray[np.float32], grey: Grey, allowed: Grey | None) -> ND
     return checked
 
 
+@attrs.define(eq=False)
+class _Alive:
+    """The corners that are being followed, with the pictures in which they were first seen."""
+
+    pixels: NDArray[np.float32] = attrs.field(factory=lambda: np.zeros((0, 2), np.float32))
+    names: NDArray[np.int64] = attrs.field(factory=lambda: np.zeros(0, np.int64))
+    born: NDArray[np.int64] = attrs.field(factory=lambda: np.zeros(0, np.int64))
+    origin: NDArray[np.float32] = attrs.field(factory=lambda: np.zeros((0, 2), np.float32))
+    pictures: dict[int, Grey] = attrs.field(factory=dict)
+    drift: NDArray[np.float32] = attrs.field(factory=lambda: np.zeros(2, np.float32))
+    following: int = 0
+
+    def keep(self, good: NDArray[np.bool_]) -> None:
+        """Drop the others, and the pictures that nobody needs any more."""
+        self.pixels, self.names, self.origin = self.pixels[good], self.names[good], self.origin[good]
+        self.born = self.born[good]
+        alive = set(np.unique(self.born).tolist())
+        self.pictures = {frame: picture for frame, picture in self.pictures.items() if frame in alive}
+
+    def add(self, new: NDArray[np.float32], frame: int, grey: Grey) -> None:
+        """Begin to follow corners of this frame."""
+        self.pixels = np.concatenate([self.pixels, new]).astype(np.float32)
+        self.origin = np.concatenate([self.origin, new]).astype(np.float32)
+        self.names = np.concatenate([self.names, np.arange(self.following, self.following + len(new))])
+        self.born = np.concatenate([self.born, np.full(len(new), frame, np.int64)])
+        self.pictures[frame] = grey
+        self.following += len(new)
+
+    def step(self, before: Grey, grey: Grey, allowed: Grey | None) -> tuple[float, float]:
+        """Follow into the next frame and back; give the share found again and the median step, pixels."""
+        import cv2
+
+        options: dict[str, Any] = {"winSize": (WINDOW, WINDOW), "maxLevel": LEVELS}
+        options["flags"] = cv2.OPTFLOW_USE_INITIAL_FLOW
+        moved, found, _ = cv2.calcOpticalFlowPyrLK(before, grey, self.pixels, self.pixels + self.drift, **options)
+        back, again, _ = cv2.calcOpticalFlowPyrLK(grey, before, moved, moved - self.drift, **options)
+        good = (found.ravel() == 1) & (again.ravel() == 1) & _inside(moved, grey, allowed)
+        good &= np.linalg.norm(back - self.pixels, axis=1) <= ROUND_TRIP
+        median = 0.0
+        if good.any():
+            steps = moved[good] - self.pixels[good]
+            self.drift = np.median(steps, axis=0).astype(np.float32)
+            median = float(np.median(np.linalg.norm(steps, axis=1)))
+        self.pixels = moved
+        self.keep(good)
+        return float(good.mean()), median
+
+    def settle(self, frame: int, grey: Grey) -> None:
+        """Move each corner to where its first picture fits, so that small errors of many steps do not add up.
+
+        One that looks different by now (blur, another side) stays where its last step took it.
+        """
+        import cv2
+
+        for born in np.unique(self.born[self.born < frame - 1]).tolist():
+            here = np.flatnonzero(self.born == born)
+            first = self.pixels[here]
+            settled, found, _ = cv2.calcOpticalFlowPyrLK(
+                self.pictures[born],
+                grey,
+                self.origin[here],
+                first.copy(),
+                winSize=(SETTLE, SETTLE),
+                maxLevel=0,
+                criteria=(cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 20, 0.005),
+                flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+            )
+            near = (found.ravel() == 1) & (np.linalg.norm(settled - first, axis=1) < STRAY)
+            self.pixels[here[near]] = settled[near]
+
+
 def follow_corners(clip: Clip, progress: Progress | None = None) -> Tracks:
     """Follow corners through the clip, forward, each step checked by going back; lost ones are replaced."""
     import cv2
 
     report = progress or silent
-    options: dict[str, Any] = {"winSize": (WINDOW, WINDOW), "maxLevel": LEVELS}
     count = len(clip)
     ids: list[NDArray[np.int64]] = []
     places: list[Array] = []
@@ -97,9 +169,7 @@ def follow_corners(clip: Clip, progress: Progress | None = None) -> Tracks:
     survived, likeness = np.ones(count), np.ones(count)
     before = np.zeros((0, 0), np.uint8)
     before_small = np.zeros(0)
-    pixels, names = np.zeros((0, 2), np.float32), np.zeros(0, np.int64)
-    drift = np.zeros(2, np.float32)
-    following = 0
+    alive = _Alive()
     for frame in range(count):
         report(frame / count)
         grey, allowed = clip.grey(frame), clip.background(frame)
@@ -108,30 +178,14 @@ def follow_corners(clip: Clip, progress: Progress | None = None) -> Tracks:
         sharpness[frame] = float(np.mean(np.hypot(dx, dy)))
         if frame:
             likeness[frame] = float(small @ before_small)
-            if len(pixels):
-                moved, found, _ = cv2.calcOpticalFlowPyrLK(
-                    before, grey, pixels, pixels + drift, flags=cv2.OPTFLOW_USE_INITIAL_FLOW, **options
-                )
-                back, again, _ = cv2.calcOpticalFlowPyrLK(
-                    grey, before, moved, moved - drift, flags=cv2.OPTFLOW_USE_INITIAL_FLOW, **options
-                )
-                good = (found.ravel() == 1) & (again.ravel() == 1) & _inside(moved, grey, allowed)
-                good &= np.linalg.norm(back - pixels, axis=1) <= ROUND_TRIP
-                survived[frame] = good.mean()
-                if good.any():
-                    step = moved[good] - pixels[good]
-                    drift = np.median(step, axis=0).astype(np.float32)
-                    motion[frame] = float(np.median(np.linalg.norm(step, axis=1)))
-                pixels, names = moved[good], names[good]
-            else:
-                survived[frame] = 0.0
-        if len(pixels) < 0.8 * CORNERS:
-            new = _fresh(grey, allowed, pixels)
-            pixels = np.concatenate([pixels, new]).astype(np.float32)
-            names = np.concatenate([names, np.arange(following, following + len(new))])
-            following += len(new)
-        ids.append(names.copy())
-        places.append(pixels.astype(np.float64))
+            survived[frame] = 0.0
+            if len(alive.pixels):
+                survived[frame], motion[frame] = alive.step(before, grey, allowed)
+                alive.settle(frame, grey)
+        if len(alive.pixels) < 0.8 * CORNERS:
+            alive.add(_fresh(grey, allowed, alive.pixels), frame, grey)
+        ids.append(alive.names.copy())
+        places.append(alive.pixels.astype(np.float64))
         before, before_small = grey, small
     report(1.0)
     return Tracks(ids, places, motion, sharpness, survived, likeness)
@@ -148,7 +202,7 @@ def key_frames(tracks: Tracks, width: int, most: int = 25) -> list[int]:
         return list(range(count))
     travelled = np.cumsum(tracks.motion) / width
     total = float(travelled[-1])
-    wanted = int(np.clip(total / 0.05, max(6, count / 5), min(most, count / 3)))
+    wanted = int(np.clip(total / 0.05, max(12, count / 5), min(most, count / 3)))
     wanted = min(max(wanted, int(np.ceil(total / 0.15)) + 1, 3), count)
     # Time keeps its share so that a pause is not left without a key frame.
     clock = 0.7 * travelled / max(total, 1e-9) + 0.3 * np.linspace(0, 1, count)

@@ -24,6 +24,8 @@ from imitation.progress import Progress, part
 FAR = 3.0  # pixels: an observation that misses by more, or by 6 times the median, is left out
 NARROW = np.radians(0.5)
 FLAT = 0.4 / 960  # of the longest side: points that leave their common plane by less are flat
+FEWEST = 50  # points that hold a path
+MORE = "mask everything that moves, or film with more parallax"
 NO_ANGLE = np.radians(1.0)
 BLURRY = 1.5 / 960
 
@@ -102,6 +104,8 @@ def moving(
     bundle = right_way_round(bundle, lambda other: refined(other, focal is None), free_focal=focal is None)
     progress(1.0)
     angles = bundle.angles()
+    if len(guessed) > 0.5 * len(clip) or len(bundle.points) < FEWEST:
+        return failed(clip, focal, f"Only {len(clip) - len(guessed)} of {len(clip)} frames could be posed: {MORE}.")
     if not len(angles) or np.median(angles) < NO_ANGLE:
         return failed(clip, focal, "The camera travels too little for the depth of the scene: film with more parallax.")
     longest = max(clip.working_size)
