@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,12 +22,13 @@ def mirror_motion(
     rest: Array,
     hidden_rest: Array,
     partners: NDArray[np.int64],
+    normal: Array,
     lags: NDArray[np.int64] | None = None,
 ) -> Array:
     """Places of hidden key points that move as their mirrors do.
 
-    In the body's own frame, found in every frame from the visible key points, a hidden point is displaced from its
-    rest place by the mirror image of its partner's displacement.
+    In the body's own frame, found in every frame from the visible key points, a hidden point is where the mirror image
+    of its partner is, shifted so that in frame 0 it is where the mesh has it (the offset of eq. 5).
 
     Parameters
     ----------
@@ -34,34 +36,75 @@ def mirror_motion(
     rest : (k, 3) their places in frame 0.
     hidden_rest : (h, 3) places of the hidden key points in frame 0.
     partners : (h,) which visible key point each one mirrors.
-    lags : (h,) frames by which the hidden limb is later than its partner (half a cycle in a walk); default 0.
+    normal : (3,) of the body's plane of symmetry in frame 0, world, unit length.
+    lags : (h,) frames by which the hidden limb is later than its partner: half a cycle in a walk, whose other half
+        stands in for the frames before the clip; default 0.
 
     Returns
     -------
     (n, h, 3) world.
     """
     lags = np.zeros(len(partners), np.int64) if lags is None else lags
-    normal = sagittal_normal(rest[partners], hidden_rest)
     rotation, centre = body_frames(points, rest)
-    origin = rest.mean(axis=0)
     own = np.einsum("nji,nkj->nki", rotation, points - centre[:, None])
-    frames = np.clip(np.arange(len(points))[:, None] - lags, 0, len(points) - 1)
-    moved = own[frames, partners] - (rest[partners] - origin)
-    mirrored = moved - 2 * (moved @ normal)[..., None] * normal
-    places: Array = np.einsum("nij,nhj->nhi", rotation, hidden_rest - origin + mirrored) + centre[:, None]
-    # Frame 0 is where the mesh is, also where a lagged partner is not.
-    places -= places[0] - hidden_rest
+    earlier = np.arange(len(points))[:, None] - lags
+    frames = np.clip(np.where(earlier < 0, earlier + 2 * lags, earlier), 0, len(points) - 1)
+    image = own[frames, partners]
+    image = image - 2 * (image @ normal)[..., None] * normal
+    image += hidden_rest - rest.mean(axis=0) - image[0]
+    places: Array = np.einsum("nij,nhj->nhi", rotation, image) + centre[:, None]
+    places += hidden_rest - places[0]
     return places
 
 
-def sagittal_normal(partners: Array, hidden: Array) -> Array:
-    """Unit normal (3,) of the plane that mirrors the partners (h, 3) onto the hidden points (h, 3)."""
-    between = partners - hidden
-    if not len(between) or np.linalg.norm(between, axis=1).min() == 0:
+def sagittal_normal(vertices: Array, across: Array, rounds: int = 30) -> Array:
+    """Unit normal (3,) of the plane in which a mesh (v, 3) is most nearly its own mirror image.
+
+    The legs of a walking pose are no mirror images of each other, so only the better matching part of the vertices
+    counts; and a slim body is nearly its own image front to back as well, so that ``across`` (3,), a direction roughly
+    from one side to the other, has a say.
+    """
+    from scipy.spatial import cKDTree
+
+    if np.linalg.norm(across) == 0:
         raise InputError("A hidden limb and its mirror are the same vertex; pair them with vertices on both sides.")
-    # Signs differ where left and right change roles; the common direction is the first singular vector.
-    normal: Array = np.linalg.svd(between)[2][0]
-    return normal
+    hint = across / np.linalg.norm(across)
+    points = vertices[:: max(1, len(vertices) // 1000)] - vertices.mean(axis=0)
+    tree = cKDTree(points)
+    best, found = np.inf, hint
+    for start in (hint, *np.linalg.svd(points, full_matrices=False)[2], *_directions(20)):
+        normal, residual = _settle_plane(points, tree, start, rounds)
+        badness = residual / np.sqrt(max(abs(float(normal @ hint)), 1e-6))
+        if badness < best:
+            best, found = badness, normal
+    return found
+
+
+def _directions(count: int) -> Array:
+    """Unit vectors (count, 3) spread evenly over a half sphere."""
+    height = (np.arange(count) + 0.5) / count
+    turn = np.arange(count) * np.pi * (3 - np.sqrt(5))
+    flat = np.sqrt(1 - height**2)
+    return np.stack([flat * np.cos(turn), flat * np.sin(turn), height], axis=1)
+
+
+def _settle_plane(points: Array, tree: Any, normal: Array, rounds: int) -> tuple[Array, float]:
+    """Closest-point iterations from a first normal: the plane's normal, and how far image and body lie apart."""
+    offset, residual = 0.0, np.inf
+    for _ in range(rounds):
+        distance, nearest = tree.query(points - 2 * (points @ normal - offset)[:, None] * normal)
+        near = distance <= np.quantile(distance, 0.6)
+        residual = float(distance[near].mean())
+        first, second = points[near], points[nearest[near]]
+        middle = (first + second).mean(axis=0) / 2
+        # The reflection that maps the one set onto the other best: smallest eigenvector of their covariance.
+        moment = (first - middle).T @ (second - middle)
+        turned = np.linalg.eigh(moment + moment.T)[1][:, 0]
+        turned = turned * (np.sign(turned @ normal) or 1.0)
+        if np.abs(turned - normal).max() < 1e-6:
+            break
+        normal, offset = turned, float(middle @ turned)
+    return normal, residual
 
 
 def body_frames(points: Array, rest: Array, rounds: int = 10) -> tuple[Array, Array]:
@@ -110,6 +153,7 @@ def partner_of(mirror: Mirror) -> tuple[str, int]:
 
 def follow_mirrors(
     lifted: Array,
+    rest: Array,
     keys: KeyTracks,
     hidden: Mapping[str, Array],
     vertices: Mapping[str, int],
@@ -120,23 +164,30 @@ def follow_mirrors(
     Parameters
     ----------
     lifted : (n, k, 3) of the visible key points.
+    rest : (v, 3) the character in frame 0.
     hidden : name -> place (3,) in frame 0 of key points without a track of their own; ``vertices`` are theirs.
     """
     count = len(lifted)
     filled = lifted.copy()
+    normal = sagittal_normal(rest, _across(rest, vertices, symmetry))
     for key, name in enumerate(keys.names):
         if name in symmetry and not keys.observed[:, key].all():
             partner, lag = partner_of(symmetry[name])
             if partner not in keys.names:
                 continue
             other = keys.names.index(partner)
-            mirrored = _mirror_one(lifted, keys.start, keys.start[key], other, lag)
+            mirrored = _mirror_one(lifted, normal, keys.start, keys.start[key], other, lag)
             seen = np.flatnonzero(keys.observed[:, key])
             boundary = {int(frame): lifted[frame, key] for frame in seen}
             filled[:, key] = transfer_track(mirrored, boundary)
     appended = [
         _mirror_one(
-            lifted, keys.start, place, keys.names.index(partner_of(symmetry[name])[0]), partner_of(symmetry[name])[1]
+            lifted,
+            normal,
+            keys.start,
+            place,
+            keys.names.index(partner_of(symmetry[name])[0]),
+            partner_of(symmetry[name])[1],
         )
         for name, place in hidden.items()
     ]
@@ -158,5 +209,14 @@ def follow_mirrors(
     return extended, np.concatenate([filled, np.stack(appended, axis=1)], axis=1)
 
 
-def _mirror_one(lifted: Array, start: Array, place: Array, partner: int, lag: int) -> Array:
-    return mirror_motion(lifted, start, place[None], np.array([partner]), np.array([lag]))[:, 0]
+def _across(rest: Array, vertices: Mapping[str, int], symmetry: Mapping[str, Mirror]) -> Array:
+    """Direction from one side to the other: the mean over all pairs, also of those that are never hidden."""
+    total = np.zeros(3)
+    for name, mirror in symmetry.items():
+        between = rest[vertices[partner_of(mirror)[0]]] - rest[vertices[name]]
+        total += between if between @ total >= 0 else -between
+    return total
+
+
+def _mirror_one(lifted: Array, normal: Array, start: Array, place: Array, partner: int, lag: int) -> Array:
+    return mirror_motion(lifted, start, place[None], np.array([partner]), normal, np.array([lag]))[:, 0]

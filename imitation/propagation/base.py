@@ -143,7 +143,7 @@ def solve_base(
     lifted, noise = solve(keys, vertices, faces, cameras, deformer, clock, alpha, settings, part(progress, 0.0, 0.55))
     if symmetry:
         places = {name: vertices[pairs[name]] for name in hidden}
-        keys, lifted = follow_mirrors(lifted, keys, places, pairs, symmetry)
+        keys, lifted = follow_mirrors(lifted, vertices, keys, places, pairs, symmetry)
         noise = keys.noise
     softness = key_softness(keys, mirrored=symmetry or {})
     frames = [points_constraint(keys.vertices, lifted[frame], softness[frame]) for frame in range(len(cameras))]

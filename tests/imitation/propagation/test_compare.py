@@ -36,6 +36,7 @@ def test_every_variant_meets_the_edited_poses_it_should(walker: Walker, base: Ba
             assert np.array_equal(made[frame], full.vertices[frame])
 
 
+@pytest.mark.slow
 def test_two_passes_beat_key_poses_and_naive_tracks(walker: Walker, base: Base) -> None:
     """From the same edited frames, with all key points put right, ours is nearer to the truth (Fig. 5, 12)."""
     committed = {
@@ -49,6 +50,7 @@ def test_two_passes_beat_key_poses_and_naive_tracks(walker: Walker, base: Base) 
         assert ours < 0.8 * walker.error(compare(base, committed, variant, deformer=walker.deformer))
 
 
+@pytest.mark.slow
 def test_first_pass_ignores_control_vertices_between_edited_frames(walker: Walker, base: Base, edits: Edits) -> None:
     """Fig. 9: without the second pass the control vertex is where it was put in its frame only."""
     full = propagate(base, edits, deformer=walker.deformer)

@@ -59,6 +59,7 @@ def test_every_key_point_has_a_boundary_value_in_every_edited_frame(walker: Walk
     assert np.array_equal(result.vertices[0], base.vertices[0])
 
 
+@pytest.mark.slow
 def test_a_new_control_vertex_does_not_alter_frames_edited_before_it(
     walker: Walker, base: Base, edits: Edits, free_vertices: list[int]
 ) -> None:
@@ -72,6 +73,7 @@ def test_a_new_control_vertex_does_not_alter_frames_edited_before_it(
     assert step < true + 0.01
 
 
+@pytest.mark.slow
 def test_second_pass_follows_the_motion_gradient_of_the_first(
     walker: Walker, base: Base, edits: Edits, free_vertices: list[int]
 ) -> None:
@@ -106,6 +108,7 @@ def test_a_control_vertex_that_follows_a_track_takes_its_motion(
     np.testing.assert_allclose(result.vertices[13:, vertex], expected, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_committed_pose_is_kept_until_its_own_frame_is_edited(walker: Walker, base: Base, edits: Edits) -> None:
     """Edits elsewhere leave an edited frame's bits alone."""
     alone = spread(walker, base, {16: edits[16]})
@@ -144,6 +147,7 @@ def test_an_end_frame_lets_the_correction_fade(walker: Walker, base: Base, edits
     assert not np.array_equal(result.vertices[19], base.vertices[19])
 
 
+@pytest.mark.slow
 def test_a_reach_narrows_an_edit(walker: Walker, base: Base, edits: Edits) -> None:
     """Outside the in and out frames nothing changes, inside it does."""
     result = spread(walker, base, edits, reach={16: (12, 20)})
@@ -154,6 +158,7 @@ def test_a_reach_narrows_an_edit(walker: Walker, base: Base, edits: Edits) -> No
     assert not np.array_equal(result.vertices[14], base.vertices[14])
 
 
+@pytest.mark.slow
 def test_order_does_not_matter_and_deletion_is_as_if_never_made(walker: Walker, base: Base, edits: Edits) -> None:
     """The result is a function of the set of edits: other orders and a detour over more edits give the same bits."""
     straight = spread(walker, base, edits)
