@@ -14,6 +14,7 @@ from imitation.errors import Cancelled, InputError, NoSolution
 from imitation.geometry import Camera
 
 if TYPE_CHECKING:
+    from imitation.cameras.solve import solve_cameras
     from imitation.deformation import Deformer, FrameConstraints
     from imitation.motion import (
         align_character,
@@ -22,10 +23,15 @@ if TYPE_CHECKING:
         smooth_depths,
         transfer_track,
     )
-    from imitation.propagation import Imitation, commit_edit, imitate, propagate, solve_base
-    from imitation.tracking import Track, carry_masks, compute_flow, track_point
+    from imitation.propagation import Imitation, ambiguous_spans, commit_edit, compare, imitate, propagate, solve_base
+    from imitation.tracking import Track, carry_masks, compute_flow, suggest_correction, track_point, track_span
 
 _PARTS = {
+    "track_span": "tracking",
+    "suggest_correction": "tracking",
+    "ambiguous_spans": "propagation",
+    "compare": "propagation",
+    "solve_cameras": "cameras",
     "Deformer": "deformation",
     "FrameConstraints": "deformation",
     "Imitation": "propagation",
@@ -55,16 +61,21 @@ __all__ = [
     "NoSolution",
     "Track",
     "align_character",
+    "ambiguous_spans",
     "anchor_depths",
     "carry_masks",
     "commit_edit",
+    "compare",
     "compute_flow",
     "imitate",
     "propagate",
     "propose_contacts",
     "smooth_depths",
     "solve_base",
+    "solve_cameras",
+    "suggest_correction",
     "track_point",
+    "track_span",
     "transfer_track",
 ]
 
