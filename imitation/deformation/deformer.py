@@ -158,6 +158,18 @@ class Deformer:
         reached = iterations is not None or bool(step <= within)
         return Pose(self.outward(inner), inner, turns, int(made), float(step), reached, notes)
 
+    def modes_of(self, asked: FrameConstraints) -> Modes | None:
+        """Slow directions of what a frame asks for; frames with the same handles may share them (``solve_pose``).
+
+        They cost as much as some frames, and only the speed depends on them: where handles change their softness
+        from frame to frame, one frame's serve all.
+        """
+        rows = build_rows(self.mesh, asked, HARD if self._paper is None else PRINTED)
+        if self._paper is not None or not len(rows.handles):
+            return None
+        rows, _ = complete(rows, self.system.rest[self.system.place[rows.handles]])
+        return self.slow_modes(rows, self.system.rest)
+
     def slow_modes(self, rows: Rows, inner: Array) -> Modes:
         """Slow directions for a set of handles; those of points alone do not depend on the frame and are kept."""
         from imitation.deformation.modes import slow_modes

@@ -18,6 +18,7 @@ from imitation.propagation.base import Base
 
 if TYPE_CHECKING:
     from imitation.deformation import Deformer
+    from imitation.deformation.modes import Modes
 
 Places = dict[int, Array]
 
@@ -106,6 +107,7 @@ class SpanSolver:
         self._clocks = [swing_clock(base.keys.planted[:, key]) for key in range(len(self.keys))]
         self._shares = [self._share(clock) for clock in self._clocks]
         self._firsts: dict[int, Array] = {}
+        self._modes: dict[int, Modes | None] = {}
         self._offsets: dict[int, tuple[list[Array], Array]] = {}
         for vertex in self.controls:
             self._offsets[vertex] = self._control_offsets(vertex)
@@ -177,9 +179,17 @@ class SpanSolver:
         return offsets, self._shares[nearest]
 
     def _deform(self, frame: int, targets: Array, controls: Places, start: Array) -> Array:
+        from imitation.deformation import FrameConstraints
+
         points = dict(zip(self.keys, targets, strict=True)) | controls
         softness = dict(zip(self.keys, self.base.softness[frame].tolist(), strict=True))
-        return self.deformer.solve(points, start=start, softness=softness)
+        pass_ = len(controls)
+        if pass_ not in self._modes:
+            # Those of the span's first frame, whichever frame comes first: the order of work must not show.
+            first = dict(zip(self.keys, self.base.softness[self.ends[0]].tolist(), strict=True))
+            self._modes[pass_] = self.deformer.modes_of(FrameConstraints(points=points, softness=first))
+        asked = FrameConstraints(points=points, softness=softness)
+        return self.deformer.solve_pose(asked, start=start, modes=self._modes[pass_]).vertices
 
 
 def _key_places(base: Base, knot: Knot) -> Array:
