@@ -102,7 +102,8 @@ def _invariant(projected: Array, count: int) -> tuple[Array, Array]:
     """
     from scipy.linalg import eig
 
-    values, left, right = eig(projected, left=True, right=True)
+    found: Any = eig(projected, left=True, right=True)
+    values, left, right = found
     order = np.argsort(-values.real, kind="stable")
     real = values.real[order]
     # Cut in the widest gap near the wanted number, so that no cluster and no conjugate pair is cut in two.
