@@ -174,8 +174,9 @@ def _from_side(session: Session, moving: _Moving, vertices: Array, frames: range
 
 
 def _contacts(session: Session) -> dict[str, list[tuple[int, int, Array]]]:
-    """Give the placed contacts that are there, by track."""
-    found = {track.id: session.ready(session.stages.contacts(track.id)) for track in session.document.tracks}
+    """Give the placed contacts by track; what was not kept from an earlier opening is placed again, quickly."""
+    marked = [track for track in session.document.tracks if track.contacts]
+    found = {track.id: session.result(session.stages.contacts(track.id)) for track in marked}
     return {
         name: [(contact.first, contact.last, contact.place) for contact in placed]
         for name, placed in found.items()

@@ -49,7 +49,7 @@ def contacts(document: Document, track: Track) -> Stage:
     """The contacts of a track with their places, in the world."""
     label = f"Placing contacts of {track.name}"
     needs = (placed(document),) if track.contacts or _anchored(document, track) else ()
-    return Stage(f"contacts/{track.id}", label, _contacts, (track.id,), needs, weight=0.01, stored=False)
+    return Stage(f"contacts/{track.id}", label, _contacts, (track.id,), needs, weight=0.01)
 
 
 def _anchored(document: Document, track: Track) -> bool:
