@@ -1,0 +1,86 @@
+"""Contacts in the world: a stray one follows the other feet, sure frames say where."""
+
+from __future__ import annotations
+
+import attrs
+import numpy as np
+import pytest
+
+from app.model.tracks import Contact
+from app.model.values import Interval
+from app.model.world import WorldChoice
+from app.stages.results import PlacedContact, World
+from app.stages.worldframe import agreed, make_world, place_contact
+from imitation import CameraPath, InputError
+
+LEVEL = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+FRAMES = 30
+
+
+@attrs.frozen
+class Found:
+    """A track as the stages see it."""
+
+    positions: np.ndarray
+    confidence: np.ndarray
+
+
+@pytest.fixture
+def world() -> World:
+    """A camera 1.5 above level ground that looks along +Y."""
+    K = np.array([[800.0, 0, 320], [0, 800, 180], [0, 0, 1]])
+    T = -LEVEL @ np.array([0, 0, 1.5])
+    path = CameraPath(np.tile(K, (FRAMES, 1, 1)), np.tile(LEVEL, (FRAMES, 1, 1)), np.tile(T, (FRAMES, 1)), "ok")
+    up = np.array([0.0, 0, 1])
+    return World(path, 1.0, np.eye(3), np.zeros(3), up, 0.0, False, True, True, None, "")
+
+
+def seen(world: World, place: np.ndarray) -> Found:
+    """A track that stays where this place is seen, surely."""
+    pixel = world.cameras[0].project(place)
+    return Found(np.tile(pixel, (FRAMES, 1)), np.ones(FRAMES))
+
+
+def test_a_stray_contact_goes_to_the_depth_of_the_other_feet(world: World) -> None:
+    """Three firm feet at depth 4; a fourth on few points at depth 6 comes to them on its own ray."""
+    firm = [PlacedContact(5 * k, 5 * k + 4, np.array([0.1 * k, 4.0, 0]), "level", 0.0, 0.9) for k in range(3)]
+    stray = PlacedContact(12, 16, np.array([0.3, 6.0, 0.2]), "level local fit to 4 of 40 points", 0.0, 0.1)
+    tracks = {"paw": seen(world, np.array([0.0, 4, 0])), "other": seen(world, stray.place)}
+    mended = agreed({"paw": firm, "other": [stray]}, tracks, world)
+    assert mended["paw"] == firm
+    place = mended["other"][0].place
+    assert world.cameras[14].depth(place) == pytest.approx(4.0)
+    assert np.abs(world.cameras[14].project(place) - tracks["other"].positions[14]).max() < 1e-9
+    assert "other feet" in mended["other"][0].ground
+
+
+def test_a_well_supported_contact_is_believed(world: World) -> None:
+    """A foot on many points stays where it is, however far from the others."""
+    firm = [PlacedContact(5 * k, 5 * k + 4, np.array([0.1 * k, 4.0, 0]), "level", 0.0, 0.9) for k in range(3)]
+    far = PlacedContact(12, 16, np.array([0.3, 6.0, 0]), "level", 0.0, 0.8)
+    tracks = {"paw": seen(world, firm[0].place), "other": seen(world, far.place)}
+    assert agreed({"paw": firm, "other": [far]}, tracks, world)["other"] == [far]
+
+
+def test_a_contact_is_where_its_sure_frames_meet_the_plane(world: World) -> None:
+    """Frames in which the track is lost do not move the contact."""
+    place = np.array([0.2, 5.0, 0.0])
+    track = seen(world, place)
+    track.positions[6:] += [30, 25]
+    track.confidence[6:] = 0.3
+    made = place_contact(Contact(Interval(2, 12)), "paw", track, WorldChoice(ground="plane"), world)
+    assert np.abs(made.place - place).max() < 1e-6
+
+
+def test_a_contact_without_its_track_says_so(world: World) -> None:
+    """A contact in frames where the point is not in the picture is refused in one sentence."""
+    track = Found(np.full((FRAMES, 2), np.nan), np.zeros(FRAMES))
+    with pytest.raises(InputError, match="paw is not in the picture in frames 2-12"):
+        place_contact(Contact(Interval(2, 12)), "paw", track, WorldChoice(ground="plane"), world)
+
+
+def test_failed_cameras_make_no_world() -> None:
+    """A failed solve is named, not used."""
+    path = CameraPath(np.eye(3)[None], np.eye(3)[None], np.zeros((1, 3)), "failed", reason="Too dark.")
+    with pytest.raises(InputError, match="Too dark"):
+        make_world(WorldChoice(), path)
