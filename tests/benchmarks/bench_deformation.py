@@ -139,31 +139,24 @@ def test_bent_cylinder(bench: Recorder) -> None:
     vertices, faces = mesh
     target = bent(vertices, np.pi / 2)
     points = {ring * 32 + k: target[ring * 32 + k] for ring in (0, 74) for k in range(0, 32, 4)}
-    posed = Deformer(vertices, faces).solve(points, iterations=10)
-    arap = Arap(mesh, list(points), 10).solve(points, vertices)
     full = mesh_volume(vertices, faces)
-    loss, theirs = (1 - mesh_volume(pose, faces) / full for pose in (posed, arap))
-    longest, other, exact = (float(edge_stretch(vertices, p, faces).max()) for p in (posed, arap, target))
-    bench.record(
-        "deformation: bent cylinder, volume lost",
-        loss,
-        asked=0.5 * theirs,
-        baseline=theirs,
-        baseline_name=f"{ARAP}, 10 iterations",
-    )
-    bench.record(
-        "deformation: bent cylinder, longest stretch",
-        longest,
-        asked=1.15,
-        baseline=other,
-        baseline_name=f"{ARAP}, 10 iterations",
-        note=f"the exact arc stretches its longest edge by {exact:.3f}",
-    )
+    exact = float(edge_stretch(vertices, target, faces).max())
+    posed = Deformer(vertices, faces).solve(points, iterations=10)
+    loss, longest = 1 - mesh_volume(posed, faces) / full, float(edge_stretch(vertices, posed, faces).max())
+    for iterations in (10, 200):
+        arap = Arap(mesh, list(points), iterations).solve(points, vertices)
+        theirs, other = 1 - mesh_volume(arap, faces) / full, float(edge_stretch(vertices, arap, faces).max())
+        by = f"{ARAP}, {iterations} iterations"
+        name = f"deformation: bent cylinder, volume lost after 10 iterations, against {iterations}"
+        bench.record(name, loss, asked=0.5 * theirs, baseline=theirs, baseline_name=by)
+    note = f"the exact arc stretches its longest edge by {exact:.3f}"
+    name = "deformation: bent cylinder, longest stretch"
+    bench.record(name, longest, asked=1.15, baseline=other, baseline_name=by, note=note)
 
 
 @pytest.mark.parametrize("name", ["horse_cyberware_2500", "armadillo_6k", "lizard_2500", "cat_sumner_7k"])
 def test_pulled_handles(bench: Recorder, shared_data: Path, name: str) -> None:
-    """Four of twelve handles pulled: spikes, stretch, volume, and how soon a cold pull has arrived."""
+    """Four of twelve handles pulled: spikes, stretch, volume."""
     mesh = read_character(shared_data, name)
     vertices, faces = mesh
     handles = farthest(vertices, 12)
@@ -185,13 +178,26 @@ def test_pulled_handles(bench: Recorder, shared_data: Path, name: str) -> None:
     mean, other = float(np.mean(stretch)), float(np.mean(strain))
     bench.record(f"{label}, longest stretch", mean, asked=0.75 * other, baseline=other, baseline_name=by)
     bench.record(f"{label}, volume step on", max(volumes), asked=0.005, unit="relative")
-    points = pulled(vertices, handles, 101)
-    diagonal = deformer.mesh.diagonal
-    exact = deformer.solve_pose(FrameConstraints(points), tolerance=1e-10, most=2000).vertices
-    near = deformer.solve(points, start=vertices, iterations=20)
-    full, few = (Arap(mesh, handles, count).solve(points, vertices) for count in (3000, 20))
-    mine, other = (float(np.linalg.norm(a - b, axis=1).max()) / diagonal for a, b in ((near, exact), (few, full)))
-    bench.record(f"{label}, cold, error after 20", mine, asked=0.1 * other, baseline=other, baseline_name=ARAP)
+
+
+def test_cold_pull(bench: Recorder, shared_data: Path) -> None:
+    """How far a cold pull is from where it ends after twenty iterations from the rest pose."""
+    mesh = read_character(shared_data, "horse_cyberware_2500")
+    vertices, faces = mesh
+    deformer, handles = Deformer(vertices, faces), farthest(vertices, 12)
+    rest = deformer.pose_of(vertices)
+    ours, theirs = [], []
+    for seed in (101, 102, 103):
+        asked = FrameConstraints(pulled(vertices, handles, seed))
+        points = {v: np.asarray(p) for v, p in asked.points.items()}
+        exact = deformer.solve_pose(asked, start=rest, tolerance=1e-10, most=2000).vertices
+        near = deformer.solve_pose(asked, start=rest, iterations=20).vertices
+        full, few = (Arap(mesh, handles, count).solve(points, vertices) for count in (2000, 20))
+        ours.append(np.linalg.norm(near - exact, axis=1).mean() / deformer.mesh.diagonal)
+        theirs.append(np.linalg.norm(few - full, axis=1).mean() / deformer.mesh.diagonal)
+    mine, other = float(np.mean(ours)), float(np.mean(theirs))
+    name = "deformation: cold pull, mean error after 20 iterations"
+    bench.record(name, mine, asked=0.1 * other, baseline=other, baseline_name=ARAP, unit="diagonals")
 
 
 @pytest.mark.parametrize("size", SIZES)
@@ -300,12 +306,13 @@ def test_one_point_and_fifteen_rays(bench: Recorder, shared_data: Path) -> None:
     deformer = Deformer(vertices, faces)
     diagonal = deformer.mesh.diagonal
     handles, more = farthest(vertices, 16), farthest(vertices, 24)
-    errors, biases = [], []
+    errors, biases, known = [], [], []
     for seed, yaw in ((51, 0.0), (52, 20.0), (53, 35.0)):
         random = np.random.default_rng(seed)
         middle = vertices.mean(axis=0)
-        axes = random.normal(size=(3, 3)) * 0.06
-        wave = vertices + np.sin(3 * (vertices - middle) / diagonal * 2) @ axes * diagonal
+        # This large, sixteen known points leave the error that the prototypes' scenes had (.002 to .003).
+        axes = random.normal(size=(3, 3)) * 0.01
+        wave = vertices + np.sin(6 * (vertices - middle) / diagonal) @ axes * diagonal
         turned = (wave - middle) @ axis_rotation([0, 1, 0], np.radians(yaw)).T + middle
         truth = deformer.solve({v: turned[v] for v in more})
         R = np.diag([1.0, -1.0, -1.0])
@@ -314,5 +321,9 @@ def test_one_point_and_fifteen_rays(bench: Recorder, shared_data: Path) -> None:
         posed = deformer.solve({handles[0]: truth[handles[0]]}, rays, camera, start=vertices)
         errors.append(float(np.linalg.norm(posed - truth, axis=1).mean()) / diagonal)
         biases.append(abs(float((camera.depth(posed) - camera.depth(truth)).mean())) / diagonal)
-    bench.record("deformation: 1 point and 15 rays, mean error", max(errors), asked=0.03, unit="diagonals")
+        full = deformer.solve({v: truth[v] for v in handles})
+        known.append(float(np.linalg.norm(full - truth, axis=1).mean()) / diagonal)
+    base, by = max(known), "the same handles as 16 points"
+    name = "deformation: 1 point and 15 rays, mean error"
+    bench.record(name, max(errors), asked=0.03, unit="diagonals", baseline=base, baseline_name=by)
     bench.record("deformation: 1 point and 15 rays, depth bias", max(biases), asked=0.02, unit="diagonals")
