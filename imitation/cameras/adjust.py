@@ -5,10 +5,13 @@ Levenberg-Marquardt with the points eliminated (Schur complement), Cauchy loss; 
 
 from __future__ import annotations
 
+from functools import partial
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from imitation.cameras.patience import patiently
 from imitation.geometry.projection import Array
 from imitation.progress import Progress, silent
 
@@ -136,10 +139,14 @@ def adjust(
     cost, ff, bf = kernels.linearise(
         R, T, f, cx, cy, X, camera, point, uv, weight, s2, turn_only, U, uf, bc, V, bp, W, Wf
     )
+
+    def reduced(damping: float, ff: float, bf: float) -> bool:
+        kernels.reduce_points(camera, start, damping, free_focal, U, uf, ff, bc, bf, V, bp, W, Wf, inverse, S, right)
+        return bool(kernels.solve_lower(S, right))
+
     for step in range(iterations):
         report(step / iterations)
-        kernels.reduce_points(camera, start, damping, free_focal, U, uf, ff, bc, bf, V, bp, W, Wf, inverse, S, right)
-        solved = kernels.solve_lower(S, right)
+        solved = patiently(partial(reduced, damping, ff, bf), partial(report, step / iterations))
         better = np.inf
         if solved and np.isfinite(right).all():
             if not free_focal:

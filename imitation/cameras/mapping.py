@@ -103,9 +103,14 @@ def _options(pycolmap: Any, focal: float | None) -> Any:
     options.min_model_size = 3
     options.max_num_models = 5
     options.init_num_trials = 60
-    options.ba_global_frames_ratio = 1.3
-    options.ba_global_points_ratio = 1.3
+    # Short walks: the search for a pair 16 degrees apart would cost more than all the rest.
+    options.mapper.init_min_tri_angle = 4.0
+    options.ba_global_frames_ratio = 1.4
+    options.ba_global_points_ratio = 1.4
     options.ba_global_max_refinements = 2
+    options.ba_local_max_refinements = 1
+    options.ba_global_function_tolerance = 1e-6
+    options.ba_local_function_tolerance = 1e-6
     if focal is not None:
         options.ba_refine_focal_length = False
         options.mapper.abs_pose_refine_focal_length = False

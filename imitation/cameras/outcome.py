@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from imitation.cameras.features import Features, Matches, find_features, match
 from imitation.cameras.follow import Tracks
 from imitation.cameras.mapping import GUESS, Model
 from imitation.cameras.path import CameraPath, Verdict
+from imitation.cameras.patience import patiently
 from imitation.cameras.plane import least_squares_plane
 from imitation.cameras.poses import Pose, Sightings, pose_all, triangulate
 from imitation.cameras.reversal import right_way_round
@@ -100,7 +102,8 @@ def moving(
     poses, guessed = pose_all(
         model, tracks, centre, rescue=_rescue(clip, features, model), progress=part(progress, 0.0, 0.3)
     )
-    bundle = refined(_bundle(model, poses, tracks, centre), focal is None, part(progress, 0.3, 0.9))
+    bundle = patiently(partial(_bundle, model, poses, tracks, centre), partial(progress, 0.3))
+    bundle = refined(bundle, focal is None, part(progress, 0.3, 0.9))
     bundle = right_way_round(bundle, lambda other: refined(other, focal is None), free_focal=focal is None)
     progress(1.0)
     angles = bundle.angles()
@@ -193,7 +196,7 @@ def _bundle(model: Model, poses: dict[int, Pose], tracks: Tracks, centre: Array)
 
 def refined(bundle: Bundle, free_focal: bool, progress: Progress | None = None, turn_only: bool = False) -> Bundle:
     """Adjust, leave out what misses, adjust again at the loss that the remaining errors suggest."""
-    for share, rounds in ((0.5, 25), (1.0, 40)):
+    for share, rounds, tolerance in ((0.5, 25, 1e-5), (1.0, 40, 1e-6)):
         scale = float(np.clip(2.5 * np.median(bundle.errors()), 0.25, 1.5))
         bundle = adjust(
             bundle,
@@ -201,6 +204,7 @@ def refined(bundle: Bundle, free_focal: bool, progress: Progress | None = None, 
             free_focal=free_focal,
             turn_only=turn_only,
             iterations=rounds,
+            tolerance=tolerance,
             progress=part(progress, share - 0.5, share),
         )
         errors = bundle.errors()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,10 @@ from imitation.cameras.follow import Tracks, follow_corners, key_frames
 from imitation.cameras.mapping import GUESS, map_key_frames
 from imitation.cameras.outcome import failed, moving, still, turning
 from imitation.cameras.path import CameraPath
+from imitation.cameras.patience import patiently
 from imitation.cameras.verdict import focal_known, stands_still, weigh, wide_pairs
 from imitation.errors import InputError
-from imitation.progress import Progress, part, steps
+from imitation.progress import Progress, part, silent
 
 BARE = 20  # corners a frame, below which a picture says nothing
 LONG_LENS = 4.0  # focal over longest side: a turn with a longer lens is rather a shift along a wall
@@ -67,11 +69,15 @@ def solve_cameras(
     if stands_still(tracks, longest):
         return still(clip, tracks, given)
     keys = key_frames(tracks, clip.working_size[0])
-    features = [find_features(clip, frame) for frame in steps(keys, part(progress, 0.25, 0.5))]
+    features = []
+    report = progress or silent
+    for done, frame in enumerate(keys):
+        share = 0.25 + 0.25 * done / len(keys)
+        features.append(patiently(partial(find_features, clip, frame), partial(report, share)))
     matches = match_pairs(features, pairs_of(len(keys)), part(progress, 0.5, 0.6))
     wide = wide_pairs(features, matches)
     if wide:
-        evidence = weigh(wide, clip.working_centre, longest, given)
+        evidence = patiently(partial(weigh, wide, clip.working_centre, longest, given), partial(report, 0.6))
         long_lens = given is None and evidence.focal > LONG_LENS * longest
         if evidence.rotation < evidence.epipolar and not long_lens:
             known = focal_known(wide, clip.working_centre, evidence.focal, GUESS * longest) if given is None else "well"
