@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isfinite
 from typing import Any
 
 import attrs
@@ -15,6 +16,8 @@ from imitation.geometry.projection import Array
 
 RAY_SOFTNESS = 0.999
 DEPTH_SOFTNESS = 0.01
+AXES = tuple(np.eye(3))
+NOWHERE = np.full(3, np.nan)
 
 
 def _mapping(value: Mapping[int, Any] | None) -> dict[int, Any]:
@@ -130,16 +133,16 @@ def build_rows(mesh: PreparedMesh, asked: FrameConstraints, hardness: float = 1.
         target=np.array([row[2] for row in rows], np.float64),
         softness=np.array([row[3] for row in rows], np.float64),
         pinned=np.array([handle in place for handle in handles], bool),
-        place=np.array([place.get(handle, np.full(3, np.nan)) for handle in handles]).reshape(-1, 3),
+        place=np.array([place.get(handle, NOWHERE) for handle in handles]).reshape(-1, 3),
         vertex=np.array([names[handle] for handle in handles], np.int64),
-        origin=np.full(3, np.nan) if camera is None else (camera.centre - mesh.centre) / mesh.diagonal,
-        axis=np.full(3, np.nan) if camera is None else camera.R[2],
+        origin=NOWHERE if camera is None else (camera.centre - mesh.centre) / mesh.diagonal,
+        axis=NOWHERE if camera is None else camera.R[2],
     )
 
 
 def _numbers(value: Any, count: int, name: str) -> Array:
     array = np.asarray(value, np.float64).reshape(-1)
-    if array.size != count or not np.isfinite(array).all():
+    if array.size != count or not all(map(isfinite, array.tolist())):
         raise InputError(f"{name} must be {count} finite numbers, but is {np.asarray(value).tolist()}.")
     return array
 
@@ -163,7 +166,7 @@ def _point(
         if soft <= found[handle][0][2]:
             return
     place[handle] = wanted
-    found[handle] = [(axis, float(axis @ wanted), soft) for axis in np.eye(3)]
+    found[handle] = [(axis, value, soft) for axis, value in zip(AXES, wanted.tolist(), strict=True)]
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from imitation.deformation.session import DragSession
 
 MOST = 60
+ASTRAY = 1e-4
+"""A last step longer than this, in diagonals, means that the slow directions led nowhere."""
 HARD = 1.0
 PRINTED = 0.999
 """Softness of points: the printed form has no hard ones, this is its weight lambda (eq. 10)."""
@@ -144,7 +146,7 @@ class Deformer:
                 modes = self.slow_modes(rows, inner)
             plain = no_modes(len(inner))
             made, step = relax(inner, turns, *given, (modes or plain).arrays(), limit, within, 2)
-            if modes is not None and not step <= within:
+            if modes is not None and not step <= ASTRAY:
                 # Far from anything linear the slow directions can mislead: once more without them.
                 other, bent = first[0].copy(), first[1].copy()
                 again, last = relax(other, bent, *given, plain.arrays(), limit, within, 2)

@@ -115,7 +115,9 @@ class SmallSystem:
     def __init__(self, system: System, rows: Rows) -> None:
         self.rows = rows
         self.handle = system.place[rows.handles]
-        self.response = np.ascontiguousarray(np.stack([system.response(int(v)) for v in self.handle], axis=1))
+        self.response = np.empty((len(system.rest), len(self.handle)))
+        for position, vertex in enumerate(self.handle.tolist()):
+            self.response[:, position] = system.response(vertex)
         own = self.response[self.handle]
         typical = float(np.median(np.diagonal(own)))
         compliance = typical * (1 - rows.softness) / rows.softness
