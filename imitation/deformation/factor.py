@@ -71,7 +71,7 @@ def _split(matrix: Any, order: Literal["NATURAL", "MMD_AT_PLUS_A"]) -> Any:
     return splu(columns, permc_spec=order, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
-@njit(cache=True, nogil=True, boundscheck=False, error_model="numpy")
+@njit(cache=True, nogil=True, boundscheck=False, error_model="numpy", fastmath={"contract"})
 def solve_three(start, row, value, inverse, x):
     """Solve for three right-hand sides x (m, 3) in place."""
     size = len(inverse)

@@ -17,15 +17,15 @@ WINDOW = 5
 """Anderson's mixing looks back this many steps."""
 FARTHEST = 0.02
 """No vertex goes farther than this along the slow directions in one step: beyond, they bend."""
-SLACK = 5.0
-"""The step that includes the slow directions' rest may be this much longer than the tolerance at the end."""
+WHOLE = 0.3
+"""With the slow directions' rest added the step has to be this much shorter still: what is left there does not fade."""
 SLOW_FROM = 3
 """The first step along the slow directions: before, the rotations do not yet follow the handles."""
 RESTART = 4.0
 """It forgets them when the squared step exceeds the smallest so far by this factor."""
 
 
-@njit(**OPTIONS)
+@njit(fastmath={"contract"}, **OPTIONS)
 def local_step(pose, turn, start, other, edge, detail, spread, turned):
     """One Newton step on every vertex's rotation, then the right-hand sides with the new rotations.
 
@@ -156,7 +156,7 @@ def apply_inverse(ground, shifted, area, total, coupling, spread, turned):
     solve_three(shifted[0], shifted[1], shifted[2], shifted[3], turned)
 
 
-@njit(**OPTIONS)
+@njit(fastmath={"contract"}, **OPTIONS)
 def constrain(free, response, handle, owner, row, target, matrix, inverse):
     """Add what the constraints do, in place: ``U = G b - G C' mu + t``.
 
@@ -354,11 +354,11 @@ def relax(pose, turn, mesh, constraints, modes, iterations, tolerance, least):
         apply_inverse(ground, shifted, area, total, coupling, spread, new)
         constrain(new, response, handle, owner, row, target, matrix, inverse)
         step = np.sqrt(distance(new, pose) / size)
-        whole = step
+        whole = 0.0
         if slow and made >= SLOW_FROM and state[4] < 3:
             correct_slow(pose, new, turn, modes)
             whole = np.sqrt(distance(new, pose) / size)
-        if made == iterations or (made >= least and step <= tolerance and whole <= SLACK * tolerance):
+        if made == iterations or (made >= least and step <= tolerance and whole <= WHOLE * tolerance):
             break
         mix(pose, new, history, gram, side, weight, state)
     for i in range(size):

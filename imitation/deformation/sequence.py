@@ -57,7 +57,7 @@ def run(
                 modes = deformer.slow_modes(rows, first[0])
             pose = deformer.solve_rows(rows, first, iterations, tolerance, most, modes)
         age += 1
-        if pose.iterations > MANY and age > PATIENCE:
+        if pose.converged and pose.iterations > MANY and age > PATIENCE:
             modes, age = None, 0
         previous = pose
         before = [*before[-2:], pose]
