@@ -104,17 +104,8 @@ def build_rows(mesh: PreparedMesh, asked: FrameConstraints, hardness: float = 1.
         raise InputError(f"The softness of depths must lie between 0 and 1, but is {asked.depth_softness}.")
     found: dict[int, list[tuple[Array, float, float]]] = {}
     place: dict[int, Array] = {}
-    for vertex, value in asked.points.items():
-        world = _numbers(value, 3, f"The point of vertex {vertex}")
-        _point(
-            found,
-            place,
-            int(mesh.index[vertex]),
-            vertex,
-            (world - mesh.centre) / mesh.diagonal,
-            asked.softness,
-            hardness,
-        )
+    for vertex, wanted in zip(asked.points, _places(mesh, asked.points), strict=True):
+        _point(found, place, int(mesh.index[vertex]), vertex, wanted, asked.softness, hardness)
     for vertex, value in asked.rays.items():
         if int(mesh.index[vertex]) not in place and asked.camera is not None:
             pixel = _numbers(value, 2, f"The ray of vertex {vertex}")
@@ -138,6 +129,18 @@ def build_rows(mesh: PreparedMesh, asked: FrameConstraints, hardness: float = 1.
         origin=NOWHERE if camera is None else (camera.centre - mesh.centre) / mesh.diagonal,
         axis=NOWHERE if camera is None else camera.R[2],
     )
+
+
+def _places(mesh: PreparedMesh, points: Mapping[int, Any]) -> Array:
+    """Targets (k, 3) of all points in the solver's units."""
+    try:
+        world = np.array(list(points.values()), np.float64).reshape(len(points), 3)
+    except ValueError:
+        world = np.full((len(points), 3), np.nan)
+    if not np.isfinite(world).all():
+        world = np.array([_numbers(value, 3, f"The point of vertex {vertex}") for vertex, value in points.items()])
+    places: Array = (world - mesh.centre) / mesh.diagonal
+    return places
 
 
 def _numbers(value: Any, count: int, name: str) -> Array:
