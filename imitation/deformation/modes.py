@@ -60,6 +60,8 @@ def slow_modes(system: System, rows: Rows, rotation: Array, count: int = COUNT, 
     ----------
     rows : the constraints of a typical frame. rotation : (3, 3) overall turn of the body in that frame.
     """
+    from imitation.deformation.products import combine, products
+
     rest = system.rest
     size = len(rest)
     count = min(count, 3 * size // 4)
@@ -69,18 +71,19 @@ def slow_modes(system: System, rows: Rows, rotation: Array, count: int = COUNT, 
     basis, after, loads = np.empty((krylov, 3 * size)), np.empty((krylov, 3 * size)), np.empty((krylov, 3 * size))
     vector = step(np.random.default_rng(0).normal(size=(size, 3)))
     for made in range(krylov):
-        vector = vector - (basis[:made].T @ (loads[:made] @ vector.ravel())).reshape(size, 3)
+        vector = vector - combine(products(loads[:made], vector.reshape(1, -1)).T, basis[:made]).reshape(size, 3)
         load = system.apply(vector)
-        norm = np.sqrt(max(float(np.vdot(vector, load)), 0.0))
+        norm = np.sqrt(max(float((vector * load).sum()), 0.0))
         if norm < 1e-12:
             basis, after, loads = basis[:made], after[:made], loads[:made]
             break
         basis[made], loads[made] = vector.ravel() / norm, load.ravel() / norm
         vector = step(basis[made].reshape(size, 3))
         after[made] = vector.ravel()
-    right, left = _invariant(loads @ after.T, count)
-    moved, dual = right.T @ after, left.T @ loads
-    inner = left.T @ (loads @ after.T) @ right
+    projected = products(loads, after)
+    right, left = _invariant(projected, count)
+    moved, dual = combine(right.T.copy(), after), combine(left.T.copy(), loads)
+    inner = left.T @ projected @ right
     inverse = np.linalg.inv(left.T @ right - inner)
     moved = moved.reshape(-1, size, 3)
     moved[:, system.place[rows.handles[rows.pinned]]] = 0.0

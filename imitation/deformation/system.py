@@ -84,9 +84,10 @@ class System:
         middle = load.copy()
         ground, shifted = self._ground, self._shifted
         solve_one(ground.start, ground.row, ground.value, ground.inverse, middle)
-        middle = self.area * (middle - self.area @ middle / self.total)
+        middle = self.area * (middle - (self.area * middle).sum() / self.total)
         solve_one(shifted.start, shifted.row, shifted.value, shifted.inverse, middle)
-        return middle - self.area @ middle / self.total
+        inverted: Array = middle - (self.area * middle).sum() / self.total
+        return inverted
 
     def apply(self, pose: Array) -> Array:
         """``Q pose`` for (m, 3) or (m,)."""

@@ -36,7 +36,7 @@ class VolumeKeeper:
             slope -= slope.mean(axis=0)
             move = np.ascontiguousarray(np.stack([self.system.invert(slope[:, axis]) for axis in range(3)], axis=1))
             constrain(move, response, handle, owner, row, np.zeros_like(target), matrix, inverse)
-            gain = float(np.vdot(slope, move))
+            gain = float((slope * move).sum())
             if gain <= 0:
                 break
             pose = pose + move * (self.volume - mesh_volume(pose, self.triangles)) / gain

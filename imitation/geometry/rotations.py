@@ -58,8 +58,9 @@ def kabsch(source: ArrayLike, target: ArrayLike, weights: ArrayLike | None = Non
     before, after = np.asarray(source, np.float64), np.asarray(target, np.float64)
     share = np.ones(len(before)) if weights is None else np.asarray(weights, np.float64)
     share = share / share.sum()
-    centre, moved = share @ before, share @ after
-    rotation = nearest_rotation((after - moved).T @ ((before - centre) * share[:, None]))
+    # Sums instead of matrix products: these do not depend on the number of threads.
+    centre, moved = (share[:, None] * before).sum(axis=0), (share[:, None] * after).sum(axis=0)
+    rotation = nearest_rotation(np.einsum("ki,kj,k->ij", after - moved, before - centre, share))
     return rotation, moved - rotation @ centre
 
 

@@ -1,5 +1,8 @@
 """What must not change: rest poses, rigid motions, vertex order, bits."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -70,6 +73,34 @@ def test_same_input_gives_the_same_bits_whatever_was_solved_before() -> None:
     used.solve_sequence([FrameConstraints({v: p * 1.2 for v, p in points.items()})] * 3)
     again = used.solve(dict(reversed(points.items())))
     np.testing.assert_array_equal(again, Deformer(vertices, faces).solve(points))
+
+
+THREADS = """
+import hashlib
+from imitation.deformation import Deformer, FrameConstraints
+from tests.imitation.deformation.shapes import ball, farthest, moving
+vertices, faces = ball(5)
+handles = farthest(vertices, 12)
+frames = [FrameConstraints(dict(zip(handles, place))) for place in moving(vertices, handles, 3, 1)]
+deformer = Deformer(vertices, faces, keep_volume=True)
+print(hashlib.sha1(deformer.solve_sequence(frames).tobytes()).hexdigest())
+print(hashlib.sha1(deformer.solve(frames[2].points, start=vertices * 1.1).tobytes()).hexdigest())
+"""
+
+
+@pytest.mark.slow
+def test_number_of_threads_does_not_change_a_bit() -> None:
+    """Ten thousand vertices, one thread or two: the same bytes."""
+    outputs = {
+        subprocess.run(
+            [sys.executable, "-c", THREADS],
+            env={**os.environ, "OPENBLAS_NUM_THREADS": count, "OMP_NUM_THREADS": count, "PYTHONPATH": "."},
+            check=True,
+            capture_output=True,
+        ).stdout
+        for count in ("1", "2")
+    }
+    assert len(outputs) == 1
 
 
 @pytest.mark.slow
