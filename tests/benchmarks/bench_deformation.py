@@ -270,7 +270,7 @@ def test_sequence(bench: Recorder, shared_data: Path, size: str) -> None:
     count = 240 if size == "2.5k" else 120
     ratios, jumps, errors = [], [], []
     Deformer(vertices, faces).solve_sequence([FrameConstraints({v: vertices[v] for v in handles})] * 3)
-    for seed in (77, 177, 178):
+    for seed in (301, 302, 303):
         places = moving(vertices, handles, 240, seed)[:count]
         frames = [FrameConstraints(dict(zip(handles, place, strict=True))) for place in places]
         deformer = Deformer(vertices, faces)
