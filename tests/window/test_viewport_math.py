@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.window.canvas.view import View
+from app.window.viewport.closed import is_closed
 from app.window.viewport.drag import VertexChosen, VertexDrag, VertexMoved, VertexMoving, VertexReleased, place_under
 from app.window.viewport.lens import Lens, clipped, framed
 from app.window.viewport.orbit import Orbit, around, beside
@@ -200,3 +201,19 @@ def test_vertex_drag_states() -> None:
     assert on_axis.place[:2] == pytest.approx((0.2, 0.1))
     assert isinstance(drag.release((30, 5)), VertexMoved)
     assert drag.cancel() == VertexReleased(7)
+
+
+def test_closed_meshes_are_told_from_open_ones() -> None:
+    """A ball is closed, also with a seam of doubled vertices; not with a hole, inside out or with a turned triangle."""
+    import trimesh
+
+    mesh = trimesh.creation.icosphere(subdivisions=2)
+    vertices, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces)
+    assert is_closed(vertices, faces)
+    assert is_closed(vertices[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3))
+    assert not is_closed(vertices, faces[1:])
+    assert not is_closed(vertices, faces[:, ::-1])
+    turned = faces.copy()
+    turned[0] = turned[0, ::-1]
+    assert not is_closed(vertices, turned)
+    assert not is_closed(vertices, faces[:0])

@@ -100,6 +100,30 @@ def test_many_changes_are_drawn_once(view: Viewport) -> None:
     assert view.host.renders - before == 1
 
 
+def test_leaving_out_what_faces_away_changes_no_pixel(view: Viewport, ball: tuple[np.ndarray, np.ndarray]) -> None:
+    """A closed ball looks the same drawn whole; of an open one the inside is drawn also while it moves."""
+
+    def pictures() -> list[np.ndarray]:
+        made = []
+        for left_out in (True, False):
+            view.scene.leave_out_hidden(left_out)
+            made.append(view.host.plotter.screenshot(return_img=True))
+        return made
+
+    view._draw(fine=False)
+    look = view.scene._actors["mesh"].GetProperty()
+    assert look.GetBackfaceCulling()
+    moving, whole = pictures()
+    assert np.array_equal(moving, whole)
+    vertices, faces = ball
+    middle = vertices[faces].mean(1)
+    eye = view.lens().camera.centre
+    view.show_mesh(vertices, faces[((middle - (0, 0, 1)) @ (eye - (0, 0, 1))) < 0], None)
+    view._draw(fine=False)
+    assert not view.scene._actors["mesh"].GetProperty().GetBackfaceCulling()
+    assert view.host._picture.pixelColor(300, 225).alpha() == 255
+
+
 def test_edges_are_smooth_at_rest(view: Viewport) -> None:
     """A quarter of a second after the last change the picture is drawn once more, finer."""
     view.move_mesh(view.vertices)

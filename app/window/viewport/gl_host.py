@@ -45,6 +45,7 @@ class GlHost(QWidget):
             self.plotter.render_window.SetMultiSamples(samples)
             self._samples = samples
         self.scene.look_through(lens)
+        self.scene.leave_out_hidden(not fine)
         self.plotter.update()
         self.renders += 1
 

@@ -46,13 +46,16 @@ class RasterHost(QWidget):
             window.SetSize(*size)
             self._size = size
         self.scene.look_through(lens)
+        self.scene.leave_out_hidden(not fine)
         window.Render()
         window.GetRGBACharPixelData(0, 0, size[0] - 1, size[1] - 1, 0, self._pixels)
         rows = vtk_to_numpy(self._pixels).reshape(size[1], size[0], 4)
         self._rows = rows
-        # The rows come from the bottom up; they are turned round where they are painted, which costs nothing.
-        self._picture = QImage(rows.data, size[0], size[1], 4 * size[0], QImage.Format.Format_RGBA8888_Premultiplied)
-        self._picture = self._picture.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
+        # The rows come from the bottom up, and in an order of bytes that is painted slowly.
+        picture = QImage(rows.data, size[0], size[1], 4 * size[0], QImage.Format.Format_RGBA8888_Premultiplied)
+        picture = picture.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)
+        picture.flip(Qt.Orientation.Vertical)
+        self._picture = picture
         self.renders += 1
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -62,7 +65,7 @@ class RasterHost(QWidget):
         painter.setOpacity(self.background.mesh_opacity)
         at_rest = self._picture.width() > self.width() * self.devicePixelRatioF() + 1
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, at_rest)
-        painter.drawImage(QRectF(0, 0, self.width(), self.height()), self._picture.flipped(Qt.Orientation.Vertical))
+        painter.drawImage(QRectF(0, 0, self.width(), self.height()), self._picture)
         painter.end()
 
     def finish(self) -> None:
