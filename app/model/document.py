@@ -6,6 +6,7 @@ import attrs
 
 from app.model.character import Character
 from app.model.frozen import FrozenMap
+from app.model.performance import CapturedSequence, PerformanceChoice
 from app.model.tracks import Track
 from app.model.values import Clip, Interval, KeyMask, ModelError, Unknown
 from app.model.world import CameraChoice, WorldChoice
@@ -18,7 +19,9 @@ class Document:
     Attributes
     ----------
     range : the in and out frame of work; None is the whole clip.
-    next_id : number of the next track or character; never used twice, so that undo cannot confuse two.
+    sequences : meshes over time, whose motions are the database of performances.
+    performance : what shall be composed of them.
+    next_id : number of the next track, character or sequence; never used twice, so that undo cannot confuse two.
     """
 
     name: str = "Untitled"
@@ -29,6 +32,8 @@ class Document:
     camera: CameraChoice = attrs.field(factory=CameraChoice)
     world: WorldChoice = attrs.field(factory=WorldChoice)
     characters: tuple[Character, ...] = ()
+    sequences: tuple[CapturedSequence, ...] = ()
+    performance: PerformanceChoice = attrs.field(factory=PerformanceChoice)
     next_id: int = 1
     unknown: Unknown = attrs.field(factory=FrozenMap, repr=False)
 
@@ -46,6 +51,13 @@ class Document:
                 return character
         raise ModelError(f"There is no character {character_id!r} in this project.")
 
+    def sequence(self, sequence_id: str) -> CapturedSequence:
+        """Give a sequence by its id."""
+        for sequence in self.sequences:
+            if sequence.id == sequence_id:
+                return sequence
+        raise ModelError(f"There is no sequence {sequence_id!r} in this project.")
+
     def with_track(self, track: Track) -> Document:
         """Give a document in which this track replaces the one of its id."""
         self.track(track.id)
@@ -55,3 +67,8 @@ class Document:
         """Give a document in which this character replaces the one of its id."""
         self.character(character.id)
         return attrs.evolve(self, characters=tuple(character if c.id == character.id else c for c in self.characters))
+
+    def with_sequence(self, sequence: CapturedSequence) -> Document:
+        """Give a document in which this sequence replaces the one of its id."""
+        self.sequence(sequence.id)
+        return attrs.evolve(self, sequences=tuple(sequence if s.id == sequence.id else s for s in self.sequences))

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from hypothesis import strategies as st
 
 from app.model.document import Document
-from app.model.edits import Edit, characters, contacts, poses, scene, tracks
+from app.model.edits import Edit, characters, contacts, performance, poses, scene, sequences, tracks
+from app.model.performance import Motion
 from app.model.values import Clip, MediaRef, ModelError
 
 CLIP = Clip(MediaRef("media/clip.mp4", "c0ffee", linked=False), 320, 180, 30, 25.0)
@@ -40,6 +41,15 @@ def edit_makers(draw: st.DrawFn) -> EditMaker:
             raise ModelError("no character")
         return document.characters[number % len(document.characters)].id
 
+    def sequence(document: Document) -> str:
+        if not document.sequences:
+            raise ModelError("no sequence")
+        return document.sequences[number % len(document.sequences)].id
+
+    def motion(document: Document) -> Motion:
+        return Motion(sequence(document), frame)
+
+    size, facts = draw(st.floats(0.01, 100)), {"source_fps": 10.0 + number, "up": "y" if flag else "z"}
     mesh = MediaRef(f"{number}.ply", f"{number:x}")
     triangle = [(1.0, 2.0), (30.0, 2.0), pixel]
     makers: list[EditMaker] = [
@@ -80,6 +90,36 @@ def edit_makers(draw: st.DrawFn) -> EditMaker:
         lambda d: poses.delete_control_vertex(d, character(d), vertex),
         lambda d: poses.follow_track(d, character(d), vertex, track(d) if flag else None),
         lambda d: poses.set_edit_end(d, character(d), frame, other),
+        lambda d: sequences.add_sequence(
+            d, name="run", frame_count=number + 2, fps=25.0, media=mesh, guessed=("fps", "up")
+        ),
+        lambda d: sequences.add_sequence(d, name="walk", frame_count=frame, fps=25.0, character=character(d)),
+        lambda d: sequences.delete_sequence(d, sequence(d)),
+        lambda d: sequences.rename_sequence(d, sequence(d), f"take {number}"),
+        lambda d: sequences.relink_sequence(d, sequence(d), mesh),
+        lambda d: sequences.show_sequence(d, sequence(d), flag),
+        lambda d: sequences.set_facts(d, sequence(d), unit=size, **facts),
+        lambda d: sequences.set_facts(d, sequence(d), fps=size),
+        lambda d: sequences.set_front(d, sequence(d), size if flag else None),
+        lambda d: sequences.set_level(d, sequence(d), flag),
+        lambda d: sequences.set_structure(d, sequence(d), sensitivity=size, method="paper" if flag else "optimal"),
+        lambda d: sequences.set_boundaries(d, sequence(d), (frame, other) if flag else None),
+        lambda d: sequences.move_boundary(d, sequence(d), (frame,), frame if flag else 0, other),
+        lambda d: sequences.set_representative(d, sequence(d), frame),
+        lambda d: sequences.forget_representatives(d, sequence(d)),
+        lambda d: performance.add_key(d, motion(d), repeats=number),
+        lambda d: performance.remove_key(d, number),
+        lambda d: performance.move_key(d, number, 0),
+        lambda d: performance.set_repeats(d, 0, number),
+        lambda d: performance.set_forbidden(d, motion(d), flag),
+        lambda d: performance.set_mu(d, size),
+        lambda d: performance.set_length(d, number if flag else None),
+        lambda d: performance.set_loop(d, flag),
+        lambda d: performance.set_alternative(d, number),
+        lambda d: performance.set_methods(d, features="paper" if flag else "robust"),
+        lambda d: performance.set_height(d, size if flag else None),
+        lambda d: performance.set_smoothing(d, blend=flag, seconds=size),
+        lambda d: performance.set_hard_cut(d, motion(d), Motion(sequence(d), other), flag),
     ]
     return draw(st.sampled_from(makers))
 

@@ -27,8 +27,13 @@ def add_character(document: Document, mesh: MediaRef, *, name: str, up: UpAxis =
 
 
 def delete_character(document: Document, character_id: str) -> Edit:
-    """Delete a character with its pairs and edits."""
+    """Delete a character with its pairs and edits, and the sequences that are its motion."""
+    from app.model.edits.sequences import delete_sequence
+
     character = document.character(character_id)
+    for sequence in document.sequences:
+        if sequence.character == character_id:
+            document = delete_sequence(document, sequence.id).document
     kept = tuple(other for other in document.characters if other.id != character_id)
     return Edit(attrs.evolve(document, characters=kept), f"Delete {character.name}")
 
