@@ -9,7 +9,9 @@ import numpy as np
 
 from app.actions.session import Session
 from app.model.edits import Edit, poses
+from app.stages.project import Stages
 from app.stages.results import Animation, Array
+from app.stages.stage import Stage
 from imitation.errors import InputError
 
 STEPS = 8
@@ -23,7 +25,8 @@ class PoseDrag:
 
     Parameters
     ----------
-    session, character_id, frame : what is posed. Its motion before any edit must have been computed.
+    session, character_id, frame : what is posed. Its motion before any edit must have been computed; frame 0 only needs
+        the character to be placed.
     before : (v, 3) the frame as the user sees it, where its animation is still on its way; default the animation's.
     former : an earlier drag; of the same character it lends what depends on the mesh alone.
 
@@ -44,11 +47,13 @@ class PoseDrag:
         from imitation.deformation import Deformer
 
         self.character_id, self.frame = character_id, frame
-        base = session.ready(session.stages.base(character_id))
+        base: Any = session.ready(_ground_of(session.stages, character_id, frame))
         animated = session.ready(session.stages.animation(character_id))
         character = session.document.character(character_id)
         if before is None and isinstance(animated, Animation):
             before = animated.vertices[frame]
+        elif before is None and base is not None and not frame:
+            before = base.vertices[0]
         if base is None or before is None:
             raise InputError(f"{character.name} has not been animated yet: animate it, then pose it.")
         self._base, self._volume = base, character.solve.keep_volume
@@ -57,10 +62,10 @@ class PoseDrag:
         self._moves: dict[int, Array] = (
             {vertex: np.array(move.place) for vertex, move in edit.moves.items() if not move.muted} if edit else {}
         )
-        if former is not None and former._base is base and former._volume == self._volume:
-            self._deformer: Any = former._deformer
-        else:
-            self._deformer = Deformer(base.rest, base.faces, keep_volume=self._volume)  # type: ignore[attr-defined]
+        same = former is not None and former._volume == self._volume and np.array_equal(former._base.rest, base.rest)
+        self._deformer: Any = (
+            former._deformer if former and same else Deformer(base.rest, base.faces, keep_volume=self._volume)
+        )
         self._pose: object = self._before
 
     @property
@@ -79,7 +84,7 @@ class PoseDrag:
 
         for vertex, place in places.items():
             self._moves[int(vertex)] = np.array(tuple(place), np.float64)
-        asked = edit_constraints(self._base, self.frame, self._moves, self._before)  # type: ignore[arg-type]
+        asked = edit_constraints(self._base, self.frame, self._moves, self._before)
         pose = self._deformer.solve_pose(asked, start=self._pose, iterations=STEPS)
         self._pose = pose
         vertices: Array = pose.vertices
@@ -90,7 +95,7 @@ class PoseDrag:
         from imitation.propagation import commit_edit
 
         places = commit_edit(
-            self._base,  # type: ignore[arg-type]
+            self._base,
             self.frame,
             self._moves,
             pose=self._before,
@@ -107,6 +112,8 @@ def release(session: Session, drag: PoseDrag, moved: Iterable[int]) -> Edit:
 
 def move_vertex(session: Session, character_id: str, frame: int, vertex: int, place: Place) -> None:
     """Put one vertex somewhere in one frame, as a drag would."""
+    if not frame:
+        session.result(session.stages.start(character_id))
     drag = PoseDrag(session, character_id, frame)
     if not 0 <= vertex < len(drag.before):
         raise InputError(f"There is no vertex {vertex}: the mesh has {len(drag.before)}.")
@@ -129,16 +136,22 @@ def delete_control_vertex(session: Session, character_id: str, vertex: int) -> N
     _and_commit_anew(session, poses.delete_control_vertex(session.document, character_id, vertex), character_id)
 
 
+def _ground_of(stages: Stages, character_id: str, frame: int) -> Stage:
+    """What a frame is edited on: the motion before any edit; for frame 0 the placed character, solved or not."""
+    return stages.base(character_id) if frame else stages.start(character_id)
+
+
 def _and_commit_anew(session: Session, edit: Edit, character_id: str) -> None:
     from imitation.propagation import commit_edit
 
-    base = session.result(session.stages.base(character_id))
     document = edit.document
     for frame, pose in document.character(character_id).edits.items():
         moves = {vertex: np.array(move.place) for vertex, move in pose.moves.items() if not move.muted}
         if pose.committed or not moves:
             continue
-        places = commit_edit(base, frame, moves)  # type: ignore[arg-type]
+        # As if the moves that are gone had never been: for frame 0 from the character as it was placed.
+        ground: Any = session.result(_ground_of(Stages(document) if frame else session.stages, character_id, frame))
+        places = commit_edit(ground, frame, moves, pose=None if frame else ground.rest)
         fresh = {vertex: (float(x), float(y), float(z)) for vertex, (x, y, z) in places.items()}
         document = poses.recommit(document, character_id, frame, fresh).document
     session.apply(Edit(document, edit.label, edit.frame))

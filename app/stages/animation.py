@@ -10,6 +10,7 @@ import numpy as np
 from app.model.character import Alignment, Character, PoseEdit
 from app.model.document import Document
 from app.model.tracks import Track
+from app.model.values import Point3
 from app.stages import scene, tracking
 from app.stages.context import Context
 from app.stages.results import AlignedCharacter, Animation, PlacedContact, World
@@ -28,13 +29,23 @@ def alignment(document: Document, character: Character) -> Stage:
     return Stage(f"alignment/{character.id}", label, _alignment, inputs, needs, blocked=blocked, weight=0.1)
 
 
+def start(document: Document, character: Character) -> Stage:
+    """The character in frame 0 as the user posed it: part of placing it, before anything is solved."""
+    paired = _paired(document, character)
+    needs = (scene.world(document), alignment(document, character), *_contacts(document, paired))
+    committed = _start_places(character)
+    inputs = (_vertices(character, paired), committed, character.solve.keep_volume)
+    label = f"Posing {character.name} in the first frame"
+    return Stage(f"start/{character.id}", label, _start, inputs, needs, weight=0.1)
+
+
 def base(document: Document, character: Character) -> Stage:
-    """The character's motion before any edit."""
+    """The character's motion before any edit but that of frame 0, which it begins with."""
     paired = _paired(document, character)
     mirrors = _mirrors(document, paired) if character.solve.symmetry else ()
     needs = (
         scene.world(document),
-        alignment(document, character),
+        start(document, character),
         *_tracks(document, paired),
         *_contacts(document, paired),
     )
@@ -88,6 +99,14 @@ def _edits(character: Character) -> tuple[Any, ...]:
     )
 
 
+def _start_places(character: Character) -> tuple[tuple[int, Point3], ...]:
+    """Give the committed places of frame 0; none where the user set how far that edit counts: then it is no start."""
+    edit = character.edits.get(0)
+    if edit is None or edit.until is not None or character.solve.reach is not None:
+        return ()
+    return _counting(edit, set(character.pairs.values()))
+
+
 def _paired(document: Document, character: Character) -> list[Track]:
     return [track for track in document.tracks if track.id in character.pairs]
 
@@ -136,7 +155,7 @@ def _contacts(document: Document, paired: list[Track]) -> tuple[Stage, ...]:
     return tuple(scene.contacts(document, track) for track in paired)
 
 
-def _counting(edit: PoseEdit, paired: set[int]) -> tuple[tuple[int, tuple[float, float, float]], ...]:
+def _counting(edit: PoseEdit, paired: set[int]) -> tuple[tuple[int, Point3], ...]:
     """Give the committed places that count: none without an unmuted move, none of a muted control vertex."""
     muted = {vertex for vertex, move in edit.moves.items() if move.muted}
     if len(muted) == len(edit.moves):
@@ -153,16 +172,30 @@ def _alignment(context: Context, inputs: tuple[Any, Any, Alignment], world: Worl
     return place_character(context.media.mesh(mesh), dict(paired), choice, world, tracks, contacts)
 
 
-def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter, *needs: Any) -> Any:
+def _start(context: Context, inputs: Any, world: World, aligned: AlignedCharacter, *contacts: Any) -> Any:
+    from imitation.propagation import placed_frame, start_pose
+
+    paired, committed, keep_volume = inputs
+    planted = [name for (name, _), placed in zip(paired, contacts, strict=True) if placed and placed[0].first == 0]
+    placed = placed_frame(aligned.vertices, aligned.faces, world.camera(0), dict(paired), planted)
+    if not committed:
+        return placed
+    deformer = context.media.deformer(aligned.vertices, aligned.faces, keep_volume)
+    posed = start_pose(placed, {vertex: np.array(place) for vertex, place in committed}, deformer=deformer)
+    context.media.return_deformer(aligned.vertices, keep_volume, deformer)
+    return posed
+
+
+def _base(context: Context, inputs: Any, world: World, placed: Any, *needs: Any) -> Any:
     from imitation.propagation import solve_base
 
     paired, method, keep_volume, mirrors, hidden = inputs
     tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
     names = [name for name, _ in paired]
-    deformer = context.media.deformer(aligned.vertices, aligned.faces, keep_volume)
+    deformer = context.media.deformer(placed.rest, placed.faces, keep_volume)
     solved = solve_base(
-        aligned.vertices,
-        aligned.faces,
+        placed.rest,
+        placed.faces,
         world.cameras,
         {name: _seen(track.positions, gaps) for name, track, gaps in zip(names, tracks, hidden, strict=True)},
         dict(paired),
@@ -170,6 +203,7 @@ def _base(context: Context, inputs: Any, world: World, aligned: AlignedCharacter
         method=method,
         confidence={name: track.confidence for name, track in zip(names, tracks, strict=True)},
         symmetry=dict(mirrors) or None,
+        start=placed.vertices[0],
         deformer=deformer,
         progress=context.progress,
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),

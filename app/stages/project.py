@@ -56,6 +56,12 @@ class Stages:
             f"alignment/{character_id}", lambda: animation.alignment(self.document, self._character(character_id))
         )
 
+    def start(self, character_id: str) -> Stage:
+        """A character in the first frame as the user posed it."""
+        return self._once(
+            f"start/{character_id}", lambda: animation.start(self.document, self._character(character_id))
+        )
+
     def base(self, character_id: str) -> Stage:
         """A character's motion before any edit."""
         return self._once(f"base/{character_id}", lambda: animation.base(self.document, self._character(character_id)))
@@ -88,6 +94,7 @@ class Stages:
             yield self.track(track.id)
         for character in self.document.characters:
             yield self.alignment(character.id)
+            yield self.start(character.id)
             yield self.base(character.id)
             yield self.animation(character.id)
 

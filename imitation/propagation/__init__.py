@@ -8,6 +8,7 @@ from imitation.propagation.edits import commit_edit, edit_constraints, edited_po
 from imitation.propagation.imitate import imitate
 from imitation.propagation.propagate import Imitation, propagate
 from imitation.propagation.report import Report
+from imitation.propagation.start import placed_frame, start_pose
 
 __all__ = [
     "AmbiguousSpan",
@@ -20,6 +21,8 @@ __all__ = [
     "edit_constraints",
     "edited_pose",
     "imitate",
+    "placed_frame",
     "propagate",
     "solve_base",
+    "start_pose",
 ]

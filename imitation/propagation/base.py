@@ -31,6 +31,7 @@ OnFrame = Callable[[int, Array], None]
 FREE, MIRRORED = 0.02, 0.9
 SOFT = 0.999
 """Softness of a key point held by its track: a small give, so that a wrong track does not tear the mesh."""
+SAME = 1e-3
 
 
 @attrs.frozen(eq=False)
@@ -82,6 +83,7 @@ def solve_base(
     method: Method = "joint",
     confidence: Mapping[str, ArrayLike] | None = None,
     symmetry: Mapping[str, Mirror] | None = None,
+    start: ArrayLike | None = None,
     loss: Loss = "quadratic",
     beta: float = 1e-4,
     alpha: float = 10.0,
@@ -104,6 +106,8 @@ def solve_base(
     confidence : track name -> (n,) in [0, 1].
     symmetry : track name -> its mirror on the other side, or (mirror, frames by which it is later). Where the track
         is hidden it moves as its mirror does, also throughout the clip.
+    start : (v, 3) the character's pose in frame 0, world, see `start_pose`; lengths and offsets come from it. Default
+        ``vertices``, which stay the shape that the deformation keeps to.
     loss, beta : of the anchors (eq. 3-4).
     alpha : depth smoothing of the printed route (eq. 12).
     deformer : a prepared `Deformer` of this mesh; made here by default.
@@ -119,9 +123,10 @@ def solve_base(
         raise InputError(f'The method must be "joint" or "paper", but is "{method}".')
     if not len(cameras):
         raise InputError("There are no cameras; solve or give one camera a frame first.")
+    pose = vertices if start is None else _start(start, vertices)
     hidden = hidden_names(symmetry or {}, tracks, pairs)
     keys = key_tracks(
-        vertices,
+        pose,
         cameras,
         tracks,
         {name: vertex for name, vertex in pairs.items() if name not in hidden},
@@ -140,14 +145,19 @@ def solve_base(
     deformer = deformer or make_deformer(vertices, faces)
     clock.lap("prepare")
     solve = _solve_joint if method == "joint" else _solve_paper
-    lifted, noise = solve(keys, vertices, faces, cameras, deformer, clock, alpha, settings, part(progress, 0.0, 0.55))
+    lifted, noise = solve(
+        keys, vertices, pose, faces, cameras, deformer, clock, alpha, settings, part(progress, 0.0, 0.55)
+    )
     if symmetry:
-        places = {name: vertices[pairs[name]] for name in hidden}
-        keys, lifted = follow_mirrors(lifted, vertices, keys, places, pairs, symmetry)
+        places = {name: pose[pairs[name]] for name in hidden}
+        keys, lifted = follow_mirrors(lifted, pose, keys, places, pairs, symmetry)
         noise = keys.noise
     softness = key_softness(keys, mirrored=symmetry or {})
     frames = [points_constraint(keys.vertices, lifted[frame], softness[frame]) for frame in range(len(cameras))]
-    posed = deformer.solve_sequence(frames, start=vertices, progress=part(progress, 0.55, 1.0), on_frame=on_frame)
+    posed = deformer.solve_sequence(frames, start=pose, progress=part(progress, 0.55, 1.0), on_frame=on_frame)
+    if np.abs(posed[0] - pose).max() < SAME * diagonal(vertices):
+        # What was accepted as frame 0 to the bit, but where control vertices hold what key points alone do not.
+        posed[0] = pose
     clock.lap("deformation")
     return Base(vertices, faces, cameras, keys, lifted, softness, posed, method, noise, clock.seconds)
 
@@ -155,6 +165,7 @@ def solve_base(
 def _solve_joint(
     keys: KeyTracks,
     vertices: Array,
+    pose: Array,
     faces: NDArray[np.int32],
     cameras: CameraPath,
     deformer: Deformer,
@@ -169,7 +180,7 @@ def _solve_joint(
     anchors = np.where(keys.planted, depths_of(cameras, keys.places), np.nan)
     first = lift_tracks(keys.pixels, cameras, keys.start, pairs, size, anchors=anchors, settings=settings)
     clock.lap("lifting")
-    posed = _deform_on_rays(keys, cameras, deformer, vertices, first.points, part(progress, 0.05, 0.9))
+    posed = _deform_on_rays(keys, cameras, deformer, pose, first.points, part(progress, 0.05, 0.9))
     prior = depths_of(cameras, posed[:, keys.vertices])
     prior[~keys.observed] = np.nan
     clock.lap("depth prior")
@@ -193,6 +204,7 @@ def _solve_joint(
 def _solve_paper(
     keys: KeyTracks,
     vertices: Array,
+    pose: Array,
     faces: NDArray[np.int32],
     cameras: CameraPath,
     deformer: Deformer,
@@ -202,7 +214,7 @@ def _solve_paper(
     progress: Progress,
 ) -> tuple[Array, Array]:
     """The printed route: eq. 7-11, then eq. 12, then every 2D track upgraded to 3D."""
-    posed = _deform_on_rays(keys, cameras, deformer, vertices, keys.places, progress)
+    posed = _deform_on_rays(keys, cameras, deformer, pose, keys.places, progress)
     clock.lap("first deformation")
     clamped: NDArray[np.bool_] = np.asarray(np.isfinite(keys.places).all(axis=2))
     clamped[0] = True
@@ -217,7 +229,7 @@ def _solve_paper(
 
 
 def _deform_on_rays(
-    keys: KeyTracks, cameras: CameraPath, deformer: Deformer, rest: Array, places: Array, progress: Progress
+    keys: KeyTracks, cameras: CameraPath, deformer: Deformer, start: Array, places: Array, progress: Progress
 ) -> Array:
     """First deformation: anchors in 3D (eq. 7), all other key points on their rays (eq. 8)."""
     from imitation.deformation import FrameConstraints
@@ -234,7 +246,7 @@ def _deform_on_rays(
         given = {int(keys.vertices[key]): float(softness[frame, key]) for key in range(len(keys))}
         frames.append(FrameConstraints(points=points, rays=rays, camera=cameras[frame], depths={}, softness=given))
     # What is read off is a weak prior (a tenth of the diagonal): the last digits of the mesh do not matter.
-    return deformer.solve_sequence(frames, start=rest, tolerance=1e-5, progress=progress)
+    return deformer.solve_sequence(frames, start=start, tolerance=1e-5, progress=progress)
 
 
 def key_pairs(vertices: Array, faces: NDArray[np.int32], keys: NDArray[np.int64]) -> NDArray[np.int32]:
@@ -284,6 +296,13 @@ def _mesh(vertices: ArrayLike, faces: ArrayLike) -> tuple[Array, NDArray[np.int3
     if faces.ndim != 2 or faces.shape[1:] != (3,) or not len(faces):
         raise InputError(f"The character's faces need shape (faces, 3), but have {faces.shape}.")
     return vertices, faces
+
+
+def _start(start: ArrayLike, vertices: Array) -> Array:
+    pose = np.asarray(start, np.float64)
+    if pose.shape != vertices.shape or not np.isfinite(pose).all():
+        raise InputError(f"The pose in frame 0 needs {len(vertices)} finite places, but has shape {pose.shape}.")
+    return pose
 
 
 class Clock:

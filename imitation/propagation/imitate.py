@@ -16,6 +16,7 @@ from imitation.progress import Progress, part
 from imitation.propagation.base import Method, OnFrame, make_deformer, solve_base
 from imitation.propagation.edits import check_places, commit_edit
 from imitation.propagation.propagate import Imitation, propagate
+from imitation.propagation.start import placed_frame, start_pose
 
 if TYPE_CHECKING:
     from imitation.deformation import Deformer
@@ -53,7 +54,8 @@ def imitate(
     tracks : name -> (n, 2) pixels, NaN where absent.
     pairs : track name -> vertex.
     contacts : track name -> intervals (first frame, last frame, place (3,) world) in which the point is planted.
-    edits : frame -> {vertex: place (3,) world} as the user dragged them.
+    edits : frame -> {vertex: place (3,) world} as the user dragged them. Those of frame 0 pose the character before it
+        is solved (`start_pose`), unless ``reach`` or ``end`` says how far they count.
     method : "joint" (default) or "paper", the printed route.
     confidence : track name -> (n,) in [0, 1].
     symmetry : track name -> mirror whose motion it follows where it is hidden, see `solve_base`.
@@ -82,13 +84,21 @@ def imitate(
     if deformer is None:
         deformer = make_deformer(np.asarray(vertices, np.float64), np.asarray(faces, np.int32))
     share = 0.7 if moves else 1.0
+    committed, start = {}, None
+    if 0 in moves and 0 not in (reach or {}) and not (end is not None and len(moves) == 1):
+        planted = [name for name in pairs if any(not first for first, _, _ in (contacts or {}).get(name, ()))]
+        placed = placed_frame(vertices, faces, cameras[0], pairs, planted)
+        committed[0] = commit_edit(placed, 0, moves[0], deformer=deformer)
+        start = start_pose(placed, committed[0], deformer=deformer).vertices[0]
     base = solve_base(
         vertices, faces, cameras, tracks, pairs, contacts,
-        method=method, confidence=confidence, symmetry=symmetry, loss=loss, alpha=alpha, deformer=deformer,
-        progress=part(progress, 0.0, share), on_frame=None if moves else on_frame,
+        method=method, confidence=confidence, symmetry=symmetry, start=start, loss=loss, alpha=alpha,
+        deformer=deformer, progress=part(progress, 0.0, share), on_frame=None if moves else on_frame,
     )  # fmt: skip
     check_places(base, moves)
-    committed = {frame: commit_edit(base, frame, places, deformer=deformer) for frame, places in moves.items()}
+    for frame, places in moves.items():
+        if frame not in committed:
+            committed[frame] = commit_edit(base, frame, places, deformer=deformer)
     return propagate(
         base, committed,
         smooth=smooth, follow=follow, end=end, reach=reach, deformer=deformer,

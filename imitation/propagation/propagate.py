@@ -88,6 +88,7 @@ def propagate(
     placed = {frame: {int(v): np.asarray(p, np.float64) for v, p in edits[frame].items()} for frame in sorted(edits)}
     ranges = _reaches(placed, reach or {}, end)
     placed = {frame: places for frame, places in placed.items() if places and _inside(frame, ranges)}
+    counted, placed = placed, {frame: places for frame, places in placed.items() if frame or not _given(base, places)}
     spans = cut_spans(len(base), placed, ranges)
     gradients = _followed(base, follow or {})
     smooth = base.method == "joint" if smooth is None else smooth
@@ -114,7 +115,7 @@ def propagate(
             on_frame(frame, vertices[frame])
     report(1.0)
     clock.lap("propagation")
-    summary = make_report(base, placed, clock.seconds)
+    summary = make_report(base, counted, clock.seconds)
     return Imitation(vertices, vertices[:, base.keys.vertices], base.keys.names, summary, base, placed, solved)
 
 
@@ -158,6 +159,12 @@ def _inside(frame: int, ranges: Mapping[int, tuple[int | None, int | None]]) -> 
     """Whether an edit lies in its own reach; one outside the range that the user set counts for nothing now."""
     first, last = ranges.get(frame, (None, None))
     return (first is None or first <= frame) and (last is None or frame <= last)
+
+
+def _given(base: Base, places: Places) -> bool:
+    """Whether the base solution begins with this pose of frame 0 already, and nothing in it is a control vertex."""
+    keys = set(base.keys.vertices.tolist())
+    return keys.issuperset(places) and all(np.array_equal(base.vertices[0, v], place) for v, place in places.items())
 
 
 def _followed(base: Base, follow: Mapping[int, str]) -> dict[int, int]:

@@ -113,3 +113,53 @@ def test_posing_before_animating_says_what_to_do(session: Session) -> None:
     session.apply(tracks.set_click(session.document, track.id, 7, (100, 100)))
     with pytest.raises(InputError, match="animate it, then pose it"):
         posing.PoseDrag(session, session.document.characters[0].id, FRAME)
+
+
+def test_frame_0_is_posed_before_anything_is_solved(session: Session) -> None:
+    """An edit of frame 0 is the start of the solution; it goes on from there, and undo finds the old bits."""
+    character = session.document.characters[0].id
+    before, key = animated(session), session.stages.base(character).key
+    vertex = next(iter(session.document.characters[0].pairs.values()))
+    size = np.linalg.norm(np.ptp(before[0], axis=0))
+    place = before[0, vertex] + [0, 0, -0.05 * size]
+    posing.move_vertex(session, character, 0, vertex, place)
+    assert session.stages.base(character).key != key
+    # The next drag does not wait for the clip to be solved anew.
+    session.result(session.stages.start(character))
+    assert session.ready(session.stages.base(character)) is None
+    assert np.array_equal(posing.PoseDrag(session, character, 0).before[vertex], place)
+    after = animated(session)
+    assert np.array_equal(after[0, vertex], place)
+    assert np.linalg.norm(after[-1, vertex] - before[-1, vertex]) > 0.01 * size
+    report = session.result(session.stages.animation(character)).report  # type: ignore[attr-defined]
+    assert report["edited_frames"] == 1
+    session.undo()
+    assert session.runner.state(session.stages.animation(character)) == "fresh"
+    assert np.array_equal(animated(session), before)
+
+
+def test_frame_0_with_an_end_leaves_the_solution_alone(session: Session) -> None:
+    """Where the user says how far the edit of frame 0 counts, the rest of the clip keeps its bits."""
+    character = session.document.characters[0].id
+    before, key = animated(session), session.stages.base(character).key
+    vertex = free_vertex(session, before)
+    posing.move_vertex(session, character, 0, vertex, before[0, vertex] + [0, 0, 0.03])
+    session.apply(posing.poses.set_edit_end(session.document, character, 0, 8))
+    assert session.stages.base(character).key == key
+    after = animated(session)
+    assert np.array_equal(after[8:], before[8:])
+    assert not np.array_equal(after[4], before[4])
+
+
+def test_a_move_of_frame_0_deleted_is_as_if_never_made(session: Session) -> None:
+    """Two moves in frame 0, one deleted: the bits of the other alone."""
+    character = session.document.characters[0].id
+    before = animated(session)
+    free, paired = free_vertex(session, before), next(iter(session.document.characters[0].pairs.values()))
+    posing.move_vertex(session, character, 0, free, before[0, free] + [0, 0, 0.03])
+    alone = session.document.characters[0].edits[0].committed
+    posing.move_vertex(session, character, 0, paired, before[0, paired] + [0.02, 0, 0])
+    posing.delete_move(session, character, 0, paired)
+    again = session.document.characters[0].edits[0].committed
+    assert set(again) == set(alone)
+    np.testing.assert_allclose([again[v] for v in again], [alone[v] for v in again], atol=1e-12)
