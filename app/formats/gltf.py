@@ -47,7 +47,7 @@ class Gltf:
         if "bufferView" in entry:
             values = self._view(entry["bufferView"], entry.get("byteOffset", 0), kind, width, count)
         else:
-            if count > 50_000_000:
+            if count > 5_000_000:
                 raise ValueError("count")
             values = np.zeros((count, width), kind)
         if "sparse" in entry:

@@ -25,7 +25,10 @@ def read_ply(data: bytes, name: str) -> MeshFile:
     vertex = tables.get("vertex", {})
     if not all(axis in vertex for axis in "xyz"):
         raise InputError(f"The PLY file {name} has no vertices with x, y and z.")
-    vertices = np.stack([np.asarray(vertex[axis], np.float64) for axis in "xyz"], axis=1)
+    try:
+        vertices = np.stack([np.asarray(vertex[axis], np.float64) for axis in "xyz"], axis=1).reshape(-1, 3)
+    except (ValueError, TypeError) as error:
+        raise InputError(f"The PLY file {name} has positions that are lists: it is damaged.") from error
     face = tables.get("face", {})
     lists = face.get("vertex_indices", face.get("vertex_index"))
     if lists is None:
@@ -112,9 +115,8 @@ def _text(data: bytes, header: Header) -> dict[str, Columns]:
 def _text_columns(rows: list[list[bytes]], element: Element) -> Columns:
     if not any(item.length for item in element.properties):
         width = len(element.properties)
-        table = np.array([row[:width] for row in rows], dtype=object).astype(np.float64).reshape(len(rows), -1)
-        if table.shape[1] < width:
-            raise ValueError(element.name)
+        # Rows of another length than the width make an array that cannot take the shape.
+        table = np.array([row[:width] for row in rows], dtype=object).astype(np.float64).reshape(len(rows), width)
         return {
             item.name: table[:, k].astype(item.kind if item.kind[0] != "f" else "f8")
             for k, item in enumerate(element.properties)

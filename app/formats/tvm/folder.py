@@ -1,0 +1,63 @@
+"""A folder of meshes, one file a frame, in the natural order of their names."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from app.formats.images import natural_key, read_bytes
+from app.formats.meshes import read_mesh
+from app.formats.meshfile import check_mesh
+from app.formats.obj import read_obj
+from app.formats.tvm.dress import obj_dress
+from app.formats.tvm.frames import FrameMesh, MeshFrames
+from imitation.errors import InputError
+
+SUFFIXES = (".ply", ".obj", ".off", ".stl", ".glb")
+
+
+class FolderFrames(MeshFrames):
+    """Files of one format; colours, and for OBJ materials and textures, come along."""
+
+    def __init__(self, folder: Path) -> None:
+        self.paths = frame_files(folder)
+        self.folder, self.name = folder, folder.name
+        suffix = self.paths[0].suffix.lower()
+        self.form = f"{suffix[1:].upper()} folder"
+        if suffix == ".glb":
+            # glTF says Y up and metres; its reader turns it to Z up.
+            self.up, self.unit = "z", 1.0
+
+    def __len__(self) -> int:
+        return len(self.paths)
+
+    def _frame(self, frame: int) -> FrameMesh:
+        path = self.paths[frame]
+        if path.suffix.lower() != ".obj":
+            mesh = read_mesh(path)
+            return FrameMesh(mesh.vertices, mesh.faces, mesh.colors)
+        data = read_bytes(path).tobytes()
+        mesh = check_mesh(read_obj(data, path.name))
+        colours, texture = obj_dress(data, path, mesh)
+        return FrameMesh(mesh.vertices, mesh.faces, mesh.colors if mesh.colors is not None else colours, texture)
+
+
+def frame_files(folder: Path) -> list[Path]:
+    """Give the meshes of a folder in natural order (2 before 10).
+
+    Raises ``InputError`` when there are none, only one, or several formats.
+    """
+    try:
+        entries = sorted(folder.iterdir())
+    except OSError as error:
+        raise InputError(f"The folder {folder} cannot be read: {error.strerror or error}.") from error
+    paths = [each for each in entries if each.suffix.lower() in SUFFIXES and not each.name.startswith(".")]
+    if not paths:
+        raise InputError(f"The folder {folder} holds no PLY, OBJ, OFF, STL or GLB files: choose another one.")
+    kinds = Counter(each.suffix.lower()[1:].upper() for each in paths)
+    if len(kinds) > 1:
+        counted = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items()))
+        raise InputError(f"The folder {folder.name} mixes formats ({counted}): leave one of them in it.")
+    if len(paths) < 2:
+        raise InputError(f"The folder {folder.name} holds one mesh only: a sequence needs at least two frames.")
+    return sorted(paths, key=lambda each: natural_key(each.name))

@@ -1,0 +1,81 @@
+"""What files do not say: frame rate, up axis, unit. Guessed from a few frames, and named as guesses."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import attrs
+import numpy as np
+
+from app.formats.meshfile import Up
+from app.formats.tvm.frames import MeshFrames
+
+FPS = 25.0
+LOOKED_AT = 5
+PERSON = (0.8, 2.4)
+"""Metres: what stands this high is taken for a person, or a larger animal, in metres."""
+
+
+@attrs.frozen
+class Guess:
+    """Facts of a sequence, stated or guessed.
+
+    Attributes
+    ----------
+    fps, up, unit : as in ``CapturedSequence``.
+    guessed : which of them the files do not say.
+    why : one sentence on the guesses, empty where nothing was guessed.
+    """
+
+    fps: float
+    up: Up
+    unit: float
+    guessed: tuple[Literal["fps", "up", "unit"], ...]
+    why: str
+
+
+def guess_facts(
+    frames: MeshFrames, *, fps: float | None = None, up: Up | None = None, unit: float | None = None
+) -> Guess:
+    """Take what the user says, else what the files say, else guess.
+
+    Up: the axis, y or z, whose lower end stays at one level and along which the body is long. Unit: metres,
+    centimetres or millimetres, whichever makes the body as high as a person; metres where none does.
+    """
+    guessed: list[Literal["fps", "up", "unit"]] = []
+    words: list[str] = []
+    rate = fps if fps is not None else float(frames.fps) if frames.fps is not None else None
+    if rate is None:
+        rate = FPS
+        guessed.append("fps")
+        words.append(f"{FPS:g} frames a second")
+    axis, metres = up or frames.up, unit or frames.unit
+    if axis is None or metres is None:
+        looked = np.unique(np.linspace(0, len(frames) - 1, min(LOOKED_AT, len(frames))).round().astype(int))
+        ends = np.array([[mesh.min(axis=0), mesh.max(axis=0)] for mesh in (frames[int(k)].vertices for k in looked)])
+        if axis is None:
+            axis = _up(ends)
+            guessed.append("up")
+            words.append(f"{axis.upper()} up")
+        if metres is None:
+            height = float(np.median(ends[:, 1, 1 if axis == "y" else 2] - ends[:, 0, 1 if axis == "y" else 2]))
+            metres, named = _unit(height)
+            guessed.append("unit")
+            words.append(named)
+    why = f"Guessed for {frames.name}: {', '.join(words)}; say so if it is otherwise." if words else ""
+    return Guess(float(rate), axis, float(metres), tuple(guessed), why)
+
+
+def _up(ends: np.ndarray) -> Up:
+    extents = np.median(ends[:, 1] - ends[:, 0], axis=0)
+    # A floor that does not move speaks for an axis as much as height does.
+    wander = np.ptp(ends[:, 0], axis=0) / np.maximum(extents, 1e-12)
+    score = extents / max(float(extents.max()), 1e-12) - 0.5 * np.minimum(wander, 1.0)
+    return "y" if score[1] > score[2] else "z"
+
+
+def _unit(height: float) -> tuple[float, str]:
+    for metres, named in ((1.0, "metres"), (0.01, "centimetres"), (0.001, "millimetres")):
+        if PERSON[0] <= height * metres <= PERSON[1]:
+            return metres, named
+    return 1.0, "metres"
