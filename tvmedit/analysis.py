@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sized
+from collections.abc import Iterable
 from typing import Any, Literal
 
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from imitation.errors import InputError
 from imitation.progress import Progress, part, silent
 from tvmedit.features import (
-    CylinderHistograms,
     Features,
     Method,
-    SphericalHistograms,
     atom_distances,
-    checked_meshes,
-    facing,
     frame_distances,
     hann_taps,
     yaw_free_atom_distances,
 )
-from tvmedit.features.heading import turning
-from tvmedit.features.measure import foot_cue, surface_samples
-from tvmedit.features.paper import ANGLE_BIN
+from tvmedit.measuring import Measurement, measure
 from tvmedit.structure import Structure, parse_structure
 
 Array = NDArray[np.float64]
-SAMPLES = 600
-"""Points kept of each frame's surface, for alignment."""
 
 
 @attrs.frozen(eq=False)
@@ -127,72 +118,48 @@ def analyse(
     InputError
         No frame, a frame that is not a mesh, or a frame rate that is not positive.
     """
-    if not fps > 0 or not np.isfinite(fps):
-        raise InputError(f"The frame rate is {fps}: give a positive number of frames a second.")
-    if method not in ("robust", "paper"):
-        raise InputError(f'The method is {method!r}: say "robust" or "paper".')
-    pass_ = _Pass(height, method)
-    total = count or (len(meshes) if isinstance(meshes, Sized) else 0)
-    reading, comparing = part(progress, 0.0, 0.6), part(progress, 0.6, 1.0)
-    for done, mesh in enumerate(checked_meshes(meshes, up), start=1):
-        pass_.add(*mesh)
-        reading(min(1.0, done / total) if total else 0.5)
-    if not pass_.cues:
-        raise InputError("The sequence has no frames: give at least one mesh.")
-    features, robust = pass_.features()
-    centres = np.array(pass_.robust.centres)
-    headings = facing(pass_.foot_cues(robust.height), centres, robust.height, fps, front, turning(robust.histograms))
-    if method == "paper":
-        distances = frame_distances(features, progress=comparing)
-        atoms = atom_distances(distances)
-    else:
-        distances = frame_distances(features, headings=headings)
-        atoms = yaw_free_atom_distances(features, hann_taps(fps), harmonics=harmonics, progress=comparing)
+    measured = measure(
+        meshes, fps=fps, up=up, method=method, height=height, count=count, progress=part(progress, 0.0, 0.6)
+    ).facing(front)
+    distances, atoms = compare(measured, harmonics=harmonics, progress=part(progress, 0.6, 1.0))
     parsed = parse_structure(
         atoms, method="paper" if method == "paper" else "optimal", beta=beta, fps=fps, **(structure or {})
     )
     (progress or silent)(1.0)
+    return joined(measured, distances, atoms, parsed)
+
+
+def compare(
+    measured: Measurement, *, harmonics: int | None = None, progress: Progress | None = None
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Frame distances (eq. 2) and atom distances (eq. 5) of a sequence, each (n, n) float32."""
+    features = measured.features
+    if features.method == "paper":
+        distances = frame_distances(features, progress=progress)
+        return distances, atom_distances(distances)
+    distances = frame_distances(features, headings=measured.headings)
+    taps = hann_taps(measured.fps)
+    return distances, yaw_free_atom_distances(features, taps, harmonics=harmonics, progress=progress)
+
+
+def joined(
+    measured: Measurement,
+    frame_distances: NDArray[np.float32],
+    atom_distances: NDArray[np.float32],
+    structure: Structure,
+) -> Analysis:
+    """Put together what was measured, compared and parsed."""
     return Analysis(
-        features=features,
-        frame_distances=distances,
-        atom_distances=atoms,
-        headings=headings,
-        structure=parsed,
-        fps=float(fps),
-        height=robust.height,
-        floor=float(robust.origin[2]),
-        centres=centres,
-        samples=np.array(pass_.samples),
-        edge=float(np.median(pass_.robust.edges)),
-        up=up,
+        features=measured.features,
+        frame_distances=frame_distances,
+        atom_distances=atom_distances,
+        headings=measured.headings,
+        structure=structure,
+        fps=measured.fps,
+        height=measured.height,
+        floor=measured.floor,
+        centres=measured.centres,
+        samples=measured.samples,
+        edge=measured.edge,
+        up=measured.up,
     )
-
-
-class _Pass:
-    """Collectors of one pass."""
-
-    def __init__(self, height: float | None, method: Method) -> None:
-        self.robust = CylinderHistograms(height=height)
-        self.printed = (
-            SphericalHistograms(origin=None, radius_bin=None, angle_bin=ANGLE_BIN) if method == "paper" else None
-        )
-        self.samples: list[NDArray[np.float32]] = []
-        self.cues: list[Array] = []
-        self.scale = 0.0
-
-    def add(self, vertices: Array, faces: NDArray[np.int32]) -> None:
-        areas = self.robust.add(vertices, faces)
-        if not self.scale:
-            # The cue's bands need a body height before it is known: the first frame's own must do.
-            self.scale = self.robust.height or max(self.robust.highs[-1] - self.robust.lows[-1], 1e-9)
-        self.cues.append(foot_cue(vertices, areas, self.robust.lows[-1], self.scale))
-        self.samples.append(surface_samples(vertices, faces, SAMPLES))
-        if self.printed is not None:
-            self.printed.add(vertices)
-
-    def features(self) -> tuple[Features, Features]:
-        robust = self.robust.features()
-        return (robust if self.printed is None else self.printed.features()), robust
-
-    def foot_cues(self, height: float) -> Array:
-        return np.array(self.cues) * (self.scale / height)

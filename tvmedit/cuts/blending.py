@@ -103,7 +103,7 @@ def blend_cut(
         raise InputError("The cut is not inside the performance: blend cuts and wraps.")
     report = progress or silent
     pairs = _Pairs(graph, performance, cut, mesh_of)
-    first, last = _window(graph, performance, cut, seconds)
+    first, last = blend_window(graph, performance, cut, seconds)
     centre = 0 if last >= 0 else last
     found: dict[int, Registration] = {}
     tried: dict[int, float] = {}
@@ -183,7 +183,7 @@ class _Pairs:
         return self._known[k]
 
 
-def _window(graph: MotionGraph, performance: Performance, cut: Cut, seconds: float) -> tuple[int, int]:
+def blend_window(graph: MotionGraph, performance: Performance, cut: Cut, seconds: float) -> tuple[int, int]:
     """First and last offset from the cut: what both sequences have, and no nearer to another joint than half-way."""
     half = max(1, round(seconds * graph.fps / 2))
     positions = [0, *(other.position for other in performance.cuts if other.kind == "cut"), len(performance)]

@@ -13,7 +13,13 @@ WINDOW = (-1, 0, 1)
 """Frames around a joint that share one move."""
 
 
-def align_performance(graph: MotionGraph, performance: Performance) -> Performance:
+Joint = tuple[int, int, int, int]
+"""Sequence and frame left, sequence and frame entered."""
+
+
+def align_performance(
+    graph: MotionGraph, performance: Performance, *, known: dict[Joint, GroundMove] | None = None
+) -> Performance:
     """Place all clips of a performance.
 
     At a cut from frame a to frame b, b is laid onto a + 1, the frame that would have come, so that travel, turning
@@ -24,6 +30,8 @@ def align_performance(graph: MotionGraph, performance: Performance) -> Performan
     graph : MotionGraph
     performance : Performance
         As ``compose`` makes it, aligned or not.
+    known : dict, optional
+        Moves of joints that were found before, in the same sequences; new ones are added.
 
     Returns
     -------
@@ -31,7 +39,7 @@ def align_performance(graph: MotionGraph, performance: Performance) -> Performan
         The same frames with ``transforms`` and the cuts' residuals. A loop's closing cut has its residual; the way
         from end to start is not forced to close.
     """
-    known: dict[tuple[int, int, int, int], GroundMove] = {}
+    known = {} if known is None else known
     transforms = np.zeros((len(performance), 3))
     here = GroundMove(0.0, 0.0, 0.0)
     cuts: list[Cut] = []
@@ -47,9 +55,7 @@ def align_performance(graph: MotionGraph, performance: Performance) -> Performan
     return attrs.evolve(performance, transforms=transforms, cuts=tuple(cuts), aligned=True)
 
 
-def joint_move(
-    graph: MotionGraph, cut: Cut, known: dict[tuple[int, int, int, int], GroundMove] | None = None
-) -> GroundMove:
+def joint_move(graph: MotionGraph, cut: Cut, known: dict[Joint, GroundMove] | None = None) -> GroundMove:
     """Move that lays the frame entered onto the successor of the frame left, in that frame's sequence."""
     source, target = graph.nodes[cut.source].sequence, graph.nodes[cut.target].sequence
     key = (source, cut.leave, target, cut.enter)
