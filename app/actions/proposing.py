@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
+
 from app.actions.session import Session
+from app.model.document import Document
 from app.model.edits import Edit, contacts
+from app.model.edits.edit import clip_of
 from app.model.values import Interval
-from app.stages.results import World
-from imitation.errors import InputError
+from app.stages.results import Array, Masks, World
+from app.stages.worldframe import ground_under
+from imitation.errors import InputError, NoSolution
+
+FEWEST_PIXELS, WIDTH_SHARE = 1.5, 0.004
+"""How far a planted point's track may stray: tracks of real clips jitter by a few pixels of a wide picture."""
+BESIDE = 8
+"""Pixels by which a point on the subject's outline may lie beside its mask."""
 
 
 def proposed_contacts(session: Session, track_id: str) -> list[Interval]:
@@ -20,9 +32,48 @@ def proposed_contacts(session: Session, track_id: str) -> list[Interval]:
     found, world = session.ready(session.stages.track(track_id)), session.ready(session.stages.world)
     if found is None or not isinstance(world, World):
         raise InputError(f"{track.name} or the cameras have not been computed yet: run cameras and track first.")
-    proposals = propose_contacts(found.positions, world.cameras)  # type: ignore[attr-defined]
+    rest = [session.ready(session.stages.track(other.id)) for other in session.document.tracks if other is not track]
+    places = [other.positions for other in rest if other is not None]  # type: ignore[attr-defined]
+    proposals = propose_contacts(
+        _on_subject(session, found.positions),  # type: ignore[attr-defined]
+        world.cameras,
+        tolerance=max(FEWEST_PIXELS, WIDTH_SHARE * session.document.clip.width)
+        if session.document.clip
+        else FEWEST_PIXELS,
+        ground=_ground_of(session.document, world),
+        others=np.stack(places, axis=1) if places else None,
+    )
     spans = [Interval(first, last) for first, last in proposals]
     return [span for span in spans if not any(contact.span.overlaps(span) for contact in track.contacts)]
+
+
+def _on_subject(session: Session, positions: Array) -> Array:
+    """Positions (n, 2) without those beside the subject's mask: a track that was lost there stands still as well."""
+    masks = session.ready(session.stages.masks)
+    if not isinstance(masks, Masks):
+        return positions
+    kept = np.array(positions)
+    for frame, (x, y) in enumerate(positions):
+        if np.isfinite(x + y):
+            left, top = max(0, round(x) - BESIDE), max(0, round(y) - BESIDE)
+            if not masks[frame][top : round(y) + BESIDE + 1, left : round(x) + BESIDE + 1].any():
+                kept[frame] = np.nan
+    return kept
+
+
+def _ground_of(document: Document, world: World) -> Callable[[int, Array], Array | None] | None:
+    """Where rays meet the chosen ground; None where only a depth is known, for that is no place to stand on."""
+    if world.depth is not None:
+        return None
+
+    def met(frame: int, pixel: Array) -> Array | None:
+        try:
+            place: Array = ground_under(document.world, world, frame, pixel).intersect(world.camera(frame), pixel)
+        except NoSolution:
+            return None
+        return place
+
+    return met
 
 
 def accept_contacts(session: Session, track_id: str, spans: list[Interval]) -> None:

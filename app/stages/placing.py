@@ -10,10 +10,12 @@ import numpy as np
 from app.formats import MeshFile
 from app.model.character import Alignment
 from app.stages.results import AlignedCharacter, Array, PlacedContact, World
-from imitation.errors import InputError
+from imitation.errors import InputError, NoSolution
 
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 # Turns that bring the file's up axis to Z, by whole quarters, so that no digit of a coordinate changes.
+AGREEING = 1.25
+"""Sizes that differ by more, standing in frame 0 and on the first contact, are not those of a subject that stands."""
 TO_Z = {
     "x": np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0]]),
     "y": np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]),
@@ -69,25 +71,63 @@ def _fit(
             f"Only {len(pixels)} paired tracks are seen in the first frame, but the character needs 3 to stand on: "
             "add clicks in frame 0 or pair more tracks."
         )
+    chosen = {name: pairs[name] for name in pixels}
+    up, own = world.normal if world.levelled else None, AXES[choice.up]
+    ground = (world.normal, world.offset) if world.grounded else None
     fitted = align_character(
-        vertices,
-        {name: pairs[name] for name in pixels},
-        world.camera(0),
-        pixels,
-        places,
-        ground=(world.normal, world.offset) if world.grounded else None,
-        up=world.normal if world.levelled else None,
-        character_up=AXES[choice.up],
-        depth=world.depth,
+        vertices, chosen, world.camera(0), pixels, places, ground=ground, up=up, character_up=own, depth=world.depth
     )
+    stood = ""
+    if (
+        not places
+        and world.depth is None
+        and (later := _first_stand(vertices, pairs, own, up, world, tracks, contacts))
+    ):
+        frame, scale = later
+        if abs(np.log(scale / fitted.scale)) > np.log(AGREEING):
+            # In the air in frame 0, or the ground there is not the plane: the picture gives the depth of a known size.
+            fitted = align_character(vertices, chosen, world.camera(0), pixels, up=up, character_up=own, scale=scale)
+            stood = f", as large as on the ground in frame {frame}"
     worst = max(fitted.residuals, key=lambda name: fitted.residuals[name])
     mean = float(np.mean(list(fitted.residuals.values())))
     return (
         fitted.scale,
         fitted.rotation,
         fitted.translation,
-        f"{mean:.1f} px from its pairs on average, {worst} the worst",
+        f"{mean:.1f} px from its pairs on average, {worst} the worst{stood}",
     )
+
+
+def _first_stand(
+    vertices: Array,
+    pairs: Mapping[str, int],
+    own: tuple[float, float, float],
+    up: Array | None,
+    world: World,
+    tracks: Sequence[Any],
+    contacts: Sequence[Sequence[PlacedContact]],
+) -> tuple[int, float] | None:
+    """Frame of the first contact and the character's scale standing on it; None where nothing can be told."""
+    from imitation.motion import align_character
+
+    firsts = [placed[0] for placed in contacts if placed]
+    if not firsts:
+        return None
+    frame = min(contact.first for contact in firsts)
+    pixels, places = {}, {}
+    for name, track, placed in zip(pairs, tracks, contacts, strict=True):
+        if np.isfinite(track.positions[frame]).all():
+            pixels[name] = track.positions[frame]
+            if here := [contact.place for contact in placed if contact.first <= frame <= contact.last]:
+                places[name] = here[0]
+    if len(pixels) < 3 or not places:
+        return None
+    shown = {name: pairs[name] for name in pixels}
+    try:
+        fitted = align_character(vertices, shown, world.camera(frame), pixels, places, up=up, character_up=own)
+    except NoSolution:
+        return None
+    return frame, fitted.scale
 
 
 def _on_top(

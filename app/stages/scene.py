@@ -42,7 +42,7 @@ def placed(document: Document) -> Stage:
         document.world,
         tuple((track.id, track.name, track.contacts, _anchored(document, track)) for track in marked),
     )
-    return Stage("contacts", "Placing contacts", _placed, inputs, needs, version=2, weight=0.2)
+    return Stage("contacts", "Placing contacts", _placed, inputs, needs, version=3, weight=0.2)
 
 
 def contacts(document: Document, track: Track) -> Stage:

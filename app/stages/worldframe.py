@@ -97,7 +97,7 @@ def place_contact(contact: Contact, name: str, track: Any, choice: WorldChoice, 
     frames = [t for t in frames if track.confidence[t] >= sure]
     # The foot may hide the ground in one frame and show it in another: the best supported of some frames counts.
     tried = sorted({frames[round(share * (len(frames) - 1))] for share in (0.0, 0.25, 0.5, 0.75, 1.0)})
-    grounds = [_ground(choice, world, frame, track.positions[frame], name) for frame in tried]
+    grounds = [ground_under(choice, world, frame, track.positions[frame]) for frame in tried]
     ground = max(grounds, key=_support)
     places = []
     for frame in frames:
@@ -147,6 +147,8 @@ def agreed(
 def _support(ground: Any) -> float:
     """Share of the points nearby that speak for a local fit; 1 for a ground that does not rest on points nearby."""
     plane = ground.plane
+    if ground.name.startswith("wide fit"):
+        return FIRM
     if plane is None or not ground.name.startswith(("level local", "tilted local")) or not len(plane.used):
         return 1.0
     return float(plane.used.mean())
@@ -180,8 +182,10 @@ def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
     return ground.plane, ground.name
 
 
-def _ground(choice: WorldChoice, world: World, frame: int, pixel: Array, name: str) -> Any:
-    from imitation.cameras import Ground, Plane, constant_depth, local_ground
+def ground_under(choice: WorldChoice, world: World, frame: int, pixel: Array) -> Any:
+    """What a point seen at a pixel would stand on, by the user's choice: a ``Ground`` with its name."""
+    from imitation.cameras import Ground, Plane, constant_depth
+    from imitation.cameras.standing import standing_ground
 
     if world.depth is not None:
         return constant_depth(world.depth)
@@ -189,7 +193,7 @@ def _ground(choice: WorldChoice, world: World, frame: int, pixel: Array, name: s
     if choice.ground == "plane":
         return plane
     try:
-        return local_ground(world.cameras.points, world.cameras, frame, pixel, up=world.normal)
+        return standing_ground(world.cameras.points, world.cameras, frame, pixel, up=world.normal)
     except NoSolution as reason:
         return attrs.evolve(plane, name=f"the ground plane, for {str(reason)[0].lower()}{str(reason)[1:].rstrip('.')}")
 

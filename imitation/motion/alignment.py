@@ -12,6 +12,9 @@ from imitation.errors import InputError, NoSolution
 from imitation.geometry.projection import Camera
 from imitation.motion.banded import Array
 
+KNOWN = 1e4
+"""Pixels that a known size counts against, for its whole logarithm: it gives way to nothing."""
+
 
 @attrs.frozen(eq=False)
 class Similarity:
@@ -53,6 +56,7 @@ def align_character(
     up: ArrayLike | None = None,
     character_up: ArrayLike = (0.0, 0.0, 1.0),
     depth: float | None = None,
+    scale: float | None = None,
 ) -> Similarity:
     """Fit a character to the subject of the first frame.
 
@@ -69,6 +73,8 @@ def align_character(
         ground's normal.
     character_up : the character's own up (3,).
     depth : camera z of the character's middle where neither ground nor contacts are known.
+    scale : the size where it is known from another frame; then the picture gives the depth, and the character may be in
+        the air.
 
     Returns
     -------
@@ -86,11 +92,13 @@ def align_character(
     names, targets = _observations(vertices, pairs, pixels, places or {})
     if ground is not None and up is None:
         up = ground[0]
-    if not targets.size_known and ground is None and depth is None:
+    if scale is not None and not scale > 0:
+        raise InputError(f"The character's scale must be positive, but is {scale}.")
+    if not targets.size_known and ground is None and depth is None and scale is None:
         raise InputError(
             "The pairs leave the character's size open; mark a contact in frame 0, give the ground or a depth."
         )
-    fit = _Fit(vertices, names, pairs, camera, targets, ground, depth)
+    fit = _Fit(vertices, names, pairs, camera, targets, ground, depth, scale)
     best: tuple[float, Array, Array, Array | None] | None = None
     for start, axis in _starting_rotations(up, np.asarray(character_up, np.float64)):
         solved = fit.solve(start, axis)
@@ -126,13 +134,14 @@ class _Fit:
         targets: _Targets,
         ground: tuple[ArrayLike, float] | None,
         depth: float | None,
+        scale: float | None,
     ) -> None:
         self.vertices, self.names, self.camera, self.targets = vertices, names, camera, targets
         self.points = vertices[[pairs[name] for name in names]]
         self.centre = self.points.mean(axis=0)
         self.size = float(np.linalg.norm(np.ptp(vertices, axis=0)))
         self.ground = None if ground is None else (np.asarray(ground[0], np.float64), float(ground[1]))
-        self.depth = depth
+        self.depth, self.scale = depth, scale
         self.focal = float(np.sqrt(camera.K[0, 0] * camera.K[1, 1]))
 
     def solve(self, start: Array, axis: Array | None) -> tuple[float, Array] | None:
@@ -162,7 +171,10 @@ class _Fit:
         )
         middle = pixels.mean(axis=0)
         known = np.isfinite(self.targets.places).all(axis=1)
-        if known.any():
+        if self.scale is not None:
+            own = float(np.linalg.norm(np.ptp(self.points, axis=0)))
+            depth = self.scale * own * self.focal / max(float(np.linalg.norm(np.ptp(pixels, axis=0))), 1e-9)
+        elif known.any():
             depth = float(self.camera.depth(self.targets.places[known]).mean())
         elif self.depth is not None:
             depth = self.depth
@@ -204,6 +216,8 @@ class _Fit:
             normal, offset = self.ground
             lowest = ((scale * self.vertices @ rotation.T + translation) @ normal).min()
             parts.append(np.array([(lowest - offset) * to_pixels]))
+        if self.scale is not None:
+            parts.append(np.array([KNOWN * (parameters[0] - np.log(self.scale))]))
         if self.depth is not None and not self.targets.size_known:
             parts.append(np.array([(float(self.camera.depth(parameters[-3:])) - self.depth) * to_pixels]))
         return np.concatenate(parts)

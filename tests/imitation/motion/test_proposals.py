@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from imitation.cameras import CameraPath, Ground, Plane
 from imitation.errors import InputError
 from imitation.motion import mirror_motion, propose_contacts
 from imitation.motion.symmetry import body_frames, sagittal_normal
@@ -103,3 +104,55 @@ def test_plane_of_symmetry_of_a_walking_body(kind: str) -> None:
     turn = Rotation.from_rotvec([0.0, 0.0, 0.7])
     normal = sagittal_normal(turn.apply(posed), turn.apply([0.5, np.cos(np.pi / 6), 0.0]))
     assert abs(normal @ turn.apply([0.0, 1.0, 0.0])) > np.cos(np.radians(10))
+
+
+def leap(style: str) -> tuple[CameraPath, np.ndarray, np.ndarray]:
+    """A body that crouches on the ground, leaps and lands, filmed; its two feet and three other points in the picture.
+
+    Frames 0-9 it stands and the trunk sinks; 10-24 it is in the air with its top near 17; 25-39 it stands.
+    """
+    frames = np.arange(40)
+    height = np.minimum(0.5 * (1 - ((frames - 17) / 7.5) ** 4).clip(0), 0.49)
+    feet = np.array([[-0.1, 0, 0], [0.1, 0, 0.0]])
+    trunk = np.array([[0, 0, 0.9], [-0.2, 0, 1.3], [0.2, 0, 1.3]])
+    sway = 0.02 * np.cumsum(np.where((frames > 10) & (frames < 25), 0, np.sin(frames / 2)))
+    body = np.tile(np.concatenate([feet, trunk]), (40, 1, 1))
+    body[:, :, 2] += height[:, None]
+    body[:, 2:, 2] += sway[:, None]
+    cameras = make_camera(np.tile([0.0, 0.0, 0.7], (40, 1)), 1.8, azimuth=80, seed=5, style=style)
+    pixels = np.stack([cameras[t].project(body[t]) for t in range(40)])
+    return cameras, pixels[:, :2], pixels[:, 2:]
+
+
+@pytest.mark.parametrize("style", ["handheld", "static"])
+def test_a_leap_is_no_contact_of_both_feet(style: str) -> None:
+    """At its top the feet are still for some frames, at a height where there is no ground: they are not proposed."""
+    cameras, feet, trunk = leap(style)
+    floor = Ground("floor", plane=Plane(np.array([0.0, 0, 1]), 0.0))
+    for foot in range(2):
+        before = propose_contacts(feet[:, foot], cameras)
+        now = propose_contacts(
+            feet[:, foot], cameras, ground=lambda t, pixel: floor.intersect(cameras[t], pixel),
+            others=np.concatenate([feet[:, 1 - foot, None], trunk], axis=1),
+        )  # fmt: skip
+        assert any(first < 20 and last > 14 for first, last in before)
+        assert not any(first < 23 and last > 11 for first, last in now), now
+        assert any(first <= 2 and last >= 7 for first, last in now), now
+        assert any(first <= 27 and last >= 37 for first, last in now), now
+
+
+def test_a_long_stand_is_a_contact_though_nothing_moves() -> None:
+    """A second of stillness is no leap, also for a camera that stands still."""
+    cameras = make_camera(np.zeros((30, 3)), 1.8, azimuth=80, seed=5, style="static")
+    still = np.stack([cameras[t].project(np.zeros(3)) for t in range(30)])
+    other = np.stack([cameras[t].project(np.array([0, 0, 1.0])) for t in range(30)])
+    assert propose_contacts(still, cameras, others=other[:, None]) == [(0, 29)]
+    short = np.where(np.arange(30)[:, None] < 8, still, np.nan)
+    assert propose_contacts(short, cameras, others=other[:, None]) == []
+
+
+def test_others_of_another_clip_are_refused() -> None:
+    """Other tracks need the clip's length."""
+    cameras = make_camera(np.zeros((20, 3)), 1.0, seed=1)
+    with pytest.raises(InputError, match="Other tracks"):
+        propose_contacts(np.zeros((20, 2)), cameras, others=np.zeros((19, 3, 2)))
