@@ -37,9 +37,7 @@ def proposed_contacts(session: Session, track_id: str) -> list[Interval]:
     proposals = propose_contacts(
         _on_subject(session, found.positions),  # type: ignore[attr-defined]
         world.cameras,
-        tolerance=max(FEWEST_PIXELS, WIDTH_SHARE * session.document.clip.width)
-        if session.document.clip
-        else FEWEST_PIXELS,
+        tolerance=max(FEWEST_PIXELS, WIDTH_SHARE * clip_of(session.document).width),
         ground=_ground_of(session.document, world),
         others=np.stack(places, axis=1) if places else None,
     )
