@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from imitation.deformation.modes import Modes
     from imitation.deformation.session import DragSession
 
+KEPT = 8
+"""Sets of handles whose slow directions are kept."""
 MOST = 60
 ASTRAY = 1e-4
 """A last step longer than this, in diagonals, means that the slow directions led nowhere."""
@@ -32,6 +35,8 @@ Method = Literal["detail", "paper"]
 
 class Deformer:
     """Deforms one mesh, keeping its details; everything that depends on the mesh alone is computed once.
+
+    Several threads may use one: what is kept for later does not change a result.
 
     The energy is the paper's G (eq. 10) with the differential coordinates turned by the rotation of each one-ring's
     edges, plus a membrane that keeps limbs from inflating:
@@ -71,6 +76,7 @@ class Deformer:
         self._paper = PaperIteration(self.system) if printed else None
         self._volume = VolumeKeeper(self.system) if keep_volume else None
         self._modes: dict[tuple[bytes, ...], Modes] = {}
+        self._lock = threading.Lock()
 
     def solve(
         self,
@@ -125,10 +131,10 @@ class Deformer:
         self,
         rows: Rows,
         first: tuple[Array, Array],
-        iterations: int | None,
-        tolerance: float,
-        most: int,
-        modes: Modes | None,
+        iterations: int | None = None,
+        tolerance: float = 1e-6,
+        most: int = MOST,
+        modes: Modes | None = None,
     ) -> Pose:
         """The inner form of ``solve_pose``: rows instead of constraints, pose and rotations to begin with."""
         from imitation.deformation.kernels import relax
@@ -160,30 +166,37 @@ class Deformer:
         reached = iterations is not None or bool(step <= within)
         return Pose(self.outward(inner), inner, turns, int(made), float(step), reached, notes)
 
-    def modes_of(self, asked: FrameConstraints) -> Modes | None:
+    def modes_of(self, asked: FrameConstraints, heard: Callable[[], object] | None = None) -> Modes | None:
         """Slow directions of what a frame asks for; frames with the same handles may share them (``solve_pose``).
 
         They cost as much as some frames, and only the speed depends on them: where handles change their softness
-        from frame to frame, one frame's serve all.
+        from frame to frame, one frame's serve all. ``heard`` is called now and then and may raise to stop.
         """
         rows = build_rows(self.mesh, asked, HARD if self._paper is None else PRINTED)
         if self._paper is not None or not len(rows.handles):
             return None
         rows, _ = complete(rows, self.system.rest[self.system.place[rows.handles]])
-        return self.slow_modes(rows, self.system.rest)
+        return self.slow_modes(rows, self.system.rest, many=True, heard=heard)
 
-    def slow_modes(self, rows: Rows, inner: Array) -> Modes:
-        """Slow directions for a set of handles; those of points alone do not depend on the frame and are kept."""
-        from imitation.deformation.modes import slow_modes
+    def slow_modes(
+        self, rows: Rows, inner: Array, *, many: bool = False, heard: Callable[[], object] | None = None
+    ) -> Modes:
+        """Slow directions for a set of handles, more of them where ``many`` frames share them.
 
+        Those of points alone do not depend on the frame and are kept.
+        """
+        from imitation.deformation.modes import COUNT, COUNT_OF_MANY, KRYLOV, KRYLOV_OF_MANY, slow_modes
+
+        wanted = (COUNT_OF_MANY, KRYLOV_OF_MANY) if many else (COUNT, KRYLOV)
         if not rows.pinned.all():
-            return slow_modes(self.system, rows, kabsch(self.system.rest, inner, self.system.area)[0])
-        key = rows.signature
-        if key not in self._modes:
-            if len(self._modes) > 4:
-                self._modes.pop(next(iter(self._modes)))
-            self._modes[key] = slow_modes(self.system, rows, np.eye(3))
-        return self._modes[key]
+            return slow_modes(self.system, rows, kabsch(self.system.rest, inner, self.system.area)[0], *wanted, heard)
+        key = (*rows.signature, bytes(many))
+        with self._lock:
+            if key not in self._modes:
+                if len(self._modes) >= KEPT:
+                    self._modes.pop(next(iter(self._modes)))
+                self._modes[key] = slow_modes(self.system, rows, np.eye(3), *wanted, heard)
+            return self._modes[key]
 
     def solve_sequence(
         self,

@@ -17,9 +17,11 @@ if TYPE_CHECKING:
     from imitation.deformation.deformer import Deformer
     from imitation.deformation.modes import Modes
 
-MANY = 25
-"""Steps in a frame that say that the slow directions have changed."""
-PATIENCE = 8
+LONG = 30
+"""Frames from which on more slow directions are worth their price."""
+MANY = 45
+"""Steps in a frame that say that the slow directions have changed: those of rays do as the body turns."""
+PATIENCE = 24
 """Frames that pass at least before they are found anew."""
 
 
@@ -54,10 +56,10 @@ def run(
         else:
             first = deformer.begin(rows, begin)
             if modes is None and iterations is None:
-                modes = deformer.slow_modes(rows, first[0])
+                modes = deformer.slow_modes(rows, first[0], many=len(frames) >= LONG)
             pose = deformer.solve_rows(rows, first, iterations, tolerance, most, modes)
         age += 1
-        if pose.converged and pose.iterations > MANY and age > PATIENCE:
+        if not rows.pinned.all() and pose.converged and pose.iterations > MANY and age > PATIENCE:
             modes, age = None, 0
         previous = pose
         before = [*before[-2:], pose]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import numpy as np
@@ -61,6 +62,7 @@ class System:
         self._shifted = factorise(shifted[self.order][:, self.order]) if coupling > 0 else self._ground
         self._columns: dict[int, Array] = {}
         self._small: dict[tuple[bytes, ...], SmallSystem] = {}
+        self._lock = threading.Lock()
         self.arrays = self._arrays()
 
     def _arrays(self) -> tuple[Any, ...]:
@@ -99,11 +101,13 @@ class System:
     def small(self, rows: Rows) -> SmallSystem:
         """The dense system of one set of rows; the last few are kept, for frames of points share them."""
         key = rows.signature
-        if key not in self._small:
-            if len(self._small) >= KEPT:
-                self._small.pop(next(iter(self._small)))
-            self._small[key] = SmallSystem(self, rows)
-        return self._small[key]
+        with self._lock:
+            found = self._small.get(key)
+            if found is None:
+                if len(self._small) >= KEPT:
+                    self._small.pop(next(iter(self._small)))
+                found = self._small[key] = SmallSystem(self, rows)
+        return found
 
 
 class SmallSystem:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,7 @@ from imitation.propagation.base import SOFT, Base, make_deformer
 
 if TYPE_CHECKING:
     from imitation.deformation import Deformer, FrameConstraints
+    from imitation.deformation.modes import Modes
 
 Committed = Mapping[int, ArrayLike]
 """vertex -> place (3,): positions of all key points and of the control vertices in one edited frame."""
@@ -55,13 +56,34 @@ def commit_edit(
 
 def edited_pose(base: Base, frame: int, committed: Committed, *, deformer: Deformer | None = None) -> Array:
     """The pose (v, 3) of an edited frame: a function of the base solution and the frame's committed positions alone."""
+    from imitation.deformation import FrameConstraints
+
     check_places(base, {frame: committed})
     deformer = deformer or make_deformer(base.rest, base.faces)
     points = dict(zip(base.keys.vertices.tolist(), base.lifted[frame], strict=True))
     points.update({int(vertex): np.asarray(place, np.float64) for vertex, place in committed.items()})
-    pose = deformer.solve(points, start=base.vertices[frame])
+    keys = set(base.keys.vertices.tolist())
+    modes = typical_modes(base, deformer, sorted(points.keys() - keys))
+    asked = FrameConstraints(points=points)
+    pose = deformer.solve_pose(asked, start=base.vertices[frame], modes=modes).vertices
     pose[list(points)] = list(points.values())
     return pose
+
+
+def typical_modes(
+    base: Base, deformer: Deformer, controls: Sequence[int], heard: Callable[[], object] | None = None
+) -> Modes | None:
+    """Slow directions of a frame with these control vertices, the same for all frames and edits of a clip.
+
+    They cost as much as several frames and only steer the solver, so a frame's own softness does not matter.
+    ``heard`` is called now and then while they are found and may raise to stop.
+    """
+    from imitation.deformation import FrameConstraints
+
+    keys = base.keys.vertices.tolist()
+    points = {vertex: base.rest[vertex] for vertex in (*keys, *controls)}
+    softness = dict(zip(keys, np.median(base.softness, axis=0).tolist(), strict=True))
+    return deformer.modes_of(FrameConstraints(points=points, softness=softness), heard)
 
 
 def check_places(base: Base, edits: Mapping[int, Mapping[int, ArrayLike]]) -> None:
@@ -126,7 +148,9 @@ def _solve_edit(
     if current.shape != base.rest.shape:
         raise InputError(f"The pose to edit needs shape {base.rest.shape}, but has {current.shape}.")
     asked = edit_constraints(base, frame, moves, current, pinned)
-    posed = deformer.solve_pose(asked, start=current).vertices
+    keys = set(base.keys.vertices.tolist())
+    modes = typical_modes(base, deformer, sorted(set(asked.points) - keys))
+    posed = deformer.solve_pose(asked, start=current, modes=modes).vertices
     committed = {vertex: posed[vertex].copy() for vertex in base.keys.vertices.tolist()}
     committed.update({vertex: np.array(place, np.float64) for vertex, place in asked.points.items()})
     return committed, posed

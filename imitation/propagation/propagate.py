@@ -13,9 +13,10 @@ from imitation.errors import InputError
 from imitation.motion.banded import Array
 from imitation.progress import Progress, silent
 from imitation.propagation.base import Base, Clock, OnFrame, make_deformer
-from imitation.propagation.edits import check_places, edited_pose
+from imitation.propagation.edits import check_places, edited_pose, typical_modes
 from imitation.propagation.report import Report, make_report
-from imitation.propagation.spans import Places, Span, SpanSolver, cut_spans, sorted_outward
+from imitation.propagation.runs import Places
+from imitation.propagation.spans import Span, SpanSolver, cut_spans, sorted_outward
 
 if TYPE_CHECKING:
     from imitation.deformation import Deformer
@@ -93,6 +94,7 @@ def propagate(
     gradients = _followed(base, follow or {})
     smooth = base.method == "joint" if smooth is None else smooth
     deformer = deformer or make_deformer(base.rest, base.faces)
+    _warm(base, deformer, spans, placed, report)
     vertices = base.vertices.copy()
     fresh: list[int] = []
     for frame, places in placed.items():
@@ -107,16 +109,28 @@ def propagate(
         if on_frame is not None:
             on_frame(frame, vertices[frame])
     solvers, solved = _prepare(base, spans, vertices, deformer, smooth, gradients, two_pass, previous)
-    owners = {frame: solver for solver in solvers for frame in solver.span.frames}
-    for done, frame in enumerate(sorted_outward(np.array(list(owners), np.int64), start)):
-        report(done / len(owners))
-        vertices[frame] = owners[frame].frame(frame)
+    ranked = sorted(
+        ((rank, frame < start, frame, solver) for solver in solvers for rank, frame in solver.order(start)),
+        key=lambda each: each[:3],
+    )
+    for done, (_, _, frame, solver) in enumerate(ranked):
+        report(done / len(ranked))
+        vertices[frame] = solver.frame(frame)
         if on_frame is not None:
             on_frame(frame, vertices[frame])
     report(1.0)
     clock.lap("propagation")
     summary = make_report(base, counted, clock.seconds)
     return Imitation(vertices, vertices[:, base.keys.vertices], base.keys.names, summary, base, placed, solved)
+
+
+def _warm(base: Base, deformer: Deformer, spans: list[Span], placed: Mapping[int, Places], report: Progress) -> None:
+    """Find the slow directions that the work needs before it begins, so that a cancel is heard meanwhile."""
+    keys = frozenset(base.keys.vertices.tolist())
+    sets = {tuple(sorted(places.keys() - keys)) for places in placed.values()}
+    sets |= {tuple(span.controls(keys)) for span in spans if span.touched and len(span.frames)}
+    for controls in sorted({(), *sets}) if sets else ():
+        typical_modes(base, deformer, controls, lambda: report(0.0))
 
 
 def _prepare(

@@ -15,12 +15,12 @@ from imitation.errors import InputError
 from imitation.motion.banded import Array
 from imitation.motion.transfer import span_share, swing_clock
 from imitation.propagation.base import Base
+from imitation.propagation.edits import typical_modes
+from imitation.propagation.runs import Places, Run, frame_constraints
 
 if TYPE_CHECKING:
     from imitation.deformation import Deformer
-    from imitation.deformation.modes import Modes
-
-Places = dict[int, Array]
+    from imitation.deformation.pose import Pose
 
 
 @attrs.frozen(eq=False)
@@ -48,6 +48,16 @@ class Span:
     def touched(self) -> bool:
         """Whether anything here differs from the base solution."""
         return self.first.committed is not None or (self.last is not None and self.last.committed is not None)
+
+    def runs(self) -> list[tuple[int, range]]:
+        """Edited ends, each with the frames that are solved away from it: from both to the middle, or from the one."""
+        first, stop, last = self.first.frame + 1, self.stop, self.last
+        if last is None or last.committed is None:
+            return [(self.first.frame, range(first, stop))]
+        if self.first.committed is None:
+            return [(last.frame, range(stop - 1, first - 1, -1))]
+        middle = (first + stop) // 2
+        return [(self.first.frame, range(first, middle)), (last.frame, range(stop - 1, middle - 1, -1))]
 
     def controls(self, keys: frozenset[int]) -> list[int]:
         """Control vertices that were dragged at one of the two ends."""
@@ -82,7 +92,11 @@ def cut_spans(
 
 
 class SpanSolver:
-    """Deforms the frames of one span; each frame depends on the base solution and the span's two ends alone."""
+    """Deforms the frames of one span; each frame depends on the base solution and the span's two ends alone.
+
+    From an edited end the frames are solved one after the other, away from it, to the middle where both ends are
+    edited: what an edit changes differs little from frame to frame, so each begins with what the one before it found.
+    """
 
     def __init__(
         self,
@@ -106,11 +120,21 @@ class SpanSolver:
         self._corrections = [target - base.lifted[frame] for target, frame in zip(targets, self.ends, strict=True)]
         self._clocks = [swing_clock(base.keys.planted[:, key]) for key in range(len(self.keys))]
         self._shares = [self._share(clock) for clock in self._clocks]
-        self._firsts: dict[int, Array] = {}
-        self._modes: dict[int, Modes | None] = {}
+        self._runs = [Run(self, end, frames) for end, frames in span.runs()]
+        self._firsts: dict[int, Pose] = {}
+        self._given: dict[int, Pose] = {}
         self._offsets: dict[int, tuple[list[Array], Array]] = {}
-        for vertex in self.controls:
-            self._offsets[vertex] = self._control_offsets(vertex)
+
+    def order(self, origin: int) -> list[tuple[int, int]]:
+        """The frames of the span as (rank, frame); lower ranks are solved first, outward from a frame where possible.
+
+        A frame between two edits that lies beyond their middle has to wait for those next to the farther edit.
+        """
+        return [
+            (min(abs(each - origin) for each in run.frames) + position, frame)
+            for run in self._runs
+            for position, frame in enumerate(run.frames)
+        ]
 
     def key_targets(self, frame: int) -> Array:
         """Corrected places (k, 3) of all key points (eq. 5-6 in space)."""
@@ -120,27 +144,38 @@ class SpanSolver:
             for key in range(len(self.keys))
         ])  # fmt: skip
 
-    def first_pass(self, frame: int) -> Array:
-        """Vertices (v, 3) of a frame with the old key points only."""
-        if frame not in self._firsts:
-            self._firsts[frame] = self._deform(frame, self.key_targets(frame), {}, self.base.vertices[frame])
-        return self._firsts[frame]
-
     def frame(self, frame: int) -> Array:
         """Vertices (v, 3) of a frame: one pass where every motion gradient is known, else two."""
-        passive = [vertex for vertex in self.controls if vertex not in self.follow]
-        if not self.controls:
-            result = self.first_pass(frame)
-            self._firsts.pop(frame, None)
-            return result
-        targets = self.key_targets(frame)
+        return next(run for run in self._runs if frame in run.frames).solve(frame)
+
+    def control_targets(self, frame: int, first_pass: Array | None) -> Places:
+        """Places of the control vertices in a frame, given the first pass (v, 3) where one is needed."""
+        if self.controls and not self._offsets:
+            self._offsets = {vertex: self._control_offsets(vertex) for vertex in self.controls}
         points: Places = {}
-        start = self.first_pass(frame) if passive else self.base.vertices[frame]
         for vertex in self.controls:
             offsets, share = self._offsets[vertex]
-            points[vertex] = self._gradient(vertex, frame) + self._blend(offsets, share, frame)
-        self._firsts.pop(frame, None)
-        return self._deform(frame, targets, points, start)
+            points[vertex] = self._gradient(vertex, frame, first_pass) + self._blend(offsets, share, frame)
+        return points
+
+    @property
+    def passive(self) -> bool:
+        """Whether some control vertex has no track, so that a first pass has to find its motion gradient."""
+        return len(self.follow) < len(self.controls)
+
+    def given(self, end: int) -> Pose:
+        """The pose given at an end."""
+        if end not in self._given:
+            self._given[end] = self.deformer.pose_of(self._poses[self.ends.index(end)])
+        return self._given[end]
+
+    def first_at(self, end: int) -> Pose:
+        """The first pass at an end: what the key points alone make of the base solution there."""
+        if end not in self._firsts:
+            asked = frame_constraints(self.base, end, self.key_targets(end), {})
+            modes = typical_modes(self.base, self.deformer, [])
+            self._firsts[end] = self.deformer.solve_pose(asked, start=self.base.vertices[end], modes=modes)
+        return self._firsts[end]
 
     def signature(self) -> bytes:
         """Digest of everything the span's frames depend on besides the base solution."""
@@ -162,34 +197,26 @@ class SpanSolver:
         mixed: Array = (1 - weight) * values[0] + weight * values[1]
         return mixed
 
-    def _gradient(self, vertex: int, frame: int) -> Array:
+    def _gradient(self, vertex: int, frame: int, first_pass: Array | None) -> Array:
         """The track that a control vertex follows: that of a key point, or its own in the first pass."""
         if vertex in self.follow:
             track: Array = self.base.lifted[frame, self.follow[vertex]]
             return track
-        place: Array = self.first_pass(frame)[vertex]
+        assert first_pass is not None, "a vertex without a track needs a first pass"
+        place: Array = first_pass[vertex]
         return place
 
     def _control_offsets(self, vertex: int) -> tuple[list[Array], Array]:
         """Boundary values of a control vertex: its place in both poses, also where it was not dragged."""
-        offsets = [pose[vertex] - self._gradient(vertex, end) for pose, end in zip(self._poses, self.ends, strict=True)]
+        firsts = [self.first_at(end).vertices if self.passive else None for end in self.ends]
+        offsets = [
+            pose[vertex] - self._gradient(vertex, end, first)
+            for pose, end, first in zip(self._poses, self.ends, firsts, strict=True)
+        ]
         nearest = self.follow.get(vertex)
         if nearest is None:
             nearest = int(np.argmin(((self.base.rest[self.keys] - self.base.rest[vertex]) ** 2).sum(axis=1)))
         return offsets, self._shares[nearest]
-
-    def _deform(self, frame: int, targets: Array, controls: Places, start: Array) -> Array:
-        from imitation.deformation import FrameConstraints
-
-        points = dict(zip(self.keys, targets, strict=True)) | controls
-        softness = dict(zip(self.keys, self.base.softness[frame].tolist(), strict=True))
-        pass_ = len(controls)
-        if pass_ not in self._modes:
-            # Those of the span's first frame, whichever frame comes first: the order of work must not show.
-            first = dict(zip(self.keys, self.base.softness[self.ends[0]].tolist(), strict=True))
-            self._modes[pass_] = self.deformer.modes_of(FrameConstraints(points=points, softness=first))
-        asked = FrameConstraints(points=points, softness=softness)
-        return self.deformer.solve_pose(asked, start=start, modes=self._modes[pass_]).vertices
 
 
 def _key_places(base: Base, knot: Knot) -> Array:

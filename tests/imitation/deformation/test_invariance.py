@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -112,3 +113,18 @@ def test_characters_keep_rest_and_rigid_motions(shared_data: Path) -> None:
         deformer = Deformer(vertices, faces)
         worst = max(rigid_error(deformer, vertices, count, angle) for count in (4, 20) for angle in (0, 90, 170))
         assert worst <= 1e-9, path.stem
+
+
+def test_several_threads_may_use_one_deformer() -> None:
+    """What is kept for later is shared and changes no bit, whoever computed it and in whatever order."""
+    vertices, faces = BALL
+    jobs = []
+    for seed in range(12):
+        handles = farthest(vertices, 6 + seed % 5)
+        random = np.random.default_rng(seed)
+        jobs.append({vertex: vertices[vertex] + 0.05 * random.normal(size=3) for vertex in handles})
+    alone = [Deformer(vertices, faces).solve(points) for points in jobs]
+    shared = Deformer(vertices, faces)
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(shared.solve, jobs + jobs[::-1]))
+    assert all(np.array_equal(a, b) for a, b in zip(alone + alone[::-1], together, strict=True))

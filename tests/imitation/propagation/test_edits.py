@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from imitation.deformation import Deformer, FrameConstraints
 from imitation.errors import Cancelled, InputError
 from imitation.motion.rays import depths_of, project_points
 from imitation.motion.transfer import span_share
 from imitation.propagation import Base, commit_edit, edited_pose, propagate
+from imitation.propagation.edits import typical_modes
 from tests.imitation.propagation.conftest import Walker
 
 Edits = dict[int, dict[int, np.ndarray]]
@@ -88,10 +90,14 @@ def test_second_pass_follows_the_motion_gradient_of_the_first(
     from imitation.motion.transfer import swing_clock
 
     share = span_share(8, 16, smooth=False, clock=swing_clock(base.keys.planted[:, nearest]))[frame - 8]
-    ends = [walker.deformer.solve(
-        {v: edits[end][v] for v in keys}, start=base.vertices[end],
-        softness=dict(zip(keys, base.softness[end].tolist(), strict=True)),
-    )[vertex] for end in (8, 16)]  # fmt: skip
+    modes = typical_modes(base, walker.deformer, [])
+    asked = {end: FrameConstraints(
+        {v: edits[end][v] for v in keys}, softness=dict(zip(keys, base.softness[end].tolist(), strict=True)),
+    ) for end in (8, 16)}  # fmt: skip
+    ends = [
+        walker.deformer.solve_pose(asked[end], start=base.vertices[end], modes=modes).vertices[vertex]
+        for end in (8, 16)
+    ]
     offset = (1 - share) * (edits[8][vertex] - ends[0]) + share * (edits[16][vertex] - ends[1])
     np.testing.assert_allclose(both.vertices[frame, vertex], plain.vertices[frame, vertex] + offset, atol=1e-9)
 
@@ -201,6 +207,34 @@ def test_frames_stream_outward_from_the_edited_one(walker: Walker, base: Base, e
     spread(walker, base, {16: edits[16]}, end=22, on_frame=lambda frame, _: seen.append(frame))
     assert seen[:7] == [16, 17, 15, 18, 14, 19, 13]
     assert sorted(seen) == list(range(1, 22))
+
+
+def test_frames_between_two_edits_come_from_both_sides(walker: Walker, base: Base, edits: Edits) -> None:
+    """Every frame comes once; up to the middle outward from the origin, beyond it from the other edit inward."""
+    seen: list[int] = []
+    two = {8: edits[8], 16: edits[16]}
+    whole = spread(walker, base, two, origin=8, on_frame=lambda frame, _: seen.append(frame))
+    assert seen[:2] == [8, 16]
+    assert sorted(seen) == list(range(1, 31))
+    between = [frame for frame in seen[2:] if 8 < frame < 16]
+    assert between == [9, 10, 11, 15, 14, 13, 12]
+    for origin in (16, 30):
+        assert np.array_equal(spread(walker, base, two, origin=origin).vertices, whole.vertices)
+
+
+def test_a_cancel_is_heard_before_the_first_frame(walker: Walker, base: Base, edits: Edits) -> None:
+    """Also while slow directions are looked for, which takes as long as many frames."""
+    calls, limit = 0, 40
+
+    def stop(fraction: float) -> None:
+        nonlocal calls
+        calls += 1
+        if calls == limit:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        propagate(base, edits, deformer=Deformer(base.rest, base.faces), progress=stop)
+    assert calls == limit, "nothing may go on after a cancel"
 
 
 def test_streamed_frames_are_the_result(walker: Walker, base: Base, edits: Edits) -> None:
