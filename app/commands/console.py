@@ -26,6 +26,11 @@ class Console:
         if not self.quiet and not self.as_json:
             print(sentence, flush=True)
 
+    def warn(self, sentence: str) -> None:
+        """Print a sentence that should not be overlooked, beside the answer."""
+        if not self.quiet:
+            print(sentence, file=sys.stderr, flush=True)
+
     def answer(self, values: dict[str, Any], lines: list[str] | None = None) -> None:
         """Give the answer: as JSON, or as the lines for people."""
         if self.as_json:

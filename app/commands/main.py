@@ -27,6 +27,7 @@ VERBS = {
     "render": "app.commands.output:render",
     "compare": "app.commands.output:compare",
     "export": "app.commands.output:export",
+    "perform": "app.commands.perform:perform",
 }
 
 

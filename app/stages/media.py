@@ -7,10 +7,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from app.formats import FrameSource, MeshFile, open_images, open_video, read_mesh
+from app.formats.tvm import MeshFrames, open_mesh_frames
 from app.model.values import Clip, MediaRef
+from app.stages.deformers import Deformers
 from imitation.errors import InputError
 
 PYRAMIDS = 512 << 20
@@ -29,9 +29,10 @@ class Media:
         self.locate = locate
         self._frames: dict[str, FrameSource] = {}
         self._meshes: dict[str, MeshFile] = {}
+        self._sequences: dict[str, MeshFrames] = {}
         self._rooms: dict[str, Any] = {}
         self._prepared: tuple[tuple[str, int, int], Any] | None = None
-        self._deformer: tuple[Any, bool, Any] | None = None
+        self._deformers = Deformers()
         self.memory: dict[Any, Any] = {}
         self._lock = threading.Lock()
 
@@ -60,6 +61,14 @@ class Media:
                 mesh = self._meshes[media.fingerprint] = read_mesh(self.locate(media))
             return mesh
 
+    def mesh_frames(self, media: MediaRef) -> MeshFrames:
+        """Give the frames of a captured sequence."""
+        with self._lock:
+            frames = self._sequences.get(media.fingerprint)
+            if frames is None:
+                frames = self._sequences[media.fingerprint] = open_mesh_frames(self.locate(media))
+            return frames
+
     def flow_room(self, clip: Clip) -> Any:
         """Give the flow field of this clip that a cancelled computation left, or an empty one."""
         from imitation.tracking import FlowField
@@ -87,22 +96,8 @@ class Media:
             return self._prepared[1]
 
     def deformer(self, vertices: Any, faces: Any, keep_volume: bool = False) -> Any:
-        """Give a deformer of this rest mesh; making one costs a factorisation, so the last one is kept.
-
-        A deformer serves one thread at a time, so it is handed out once: give it back with ``return_deformer``.
-        """
-        from imitation.deformation import Deformer
-
-        with self._lock:
-            kept, self._deformer = self._deformer, None
-        if kept is not None and np.array_equal(kept[0], vertices) and kept[1] == keep_volume:
-            return kept[2]
-        return Deformer(vertices, faces, keep_volume=keep_volume)
-
-    def return_deformer(self, vertices: Any, keep_volume: bool, deformer: Any) -> None:
-        """Keep a deformer for the next stage of the same mesh."""
-        with self._lock:
-            self._deformer = (vertices, keep_volume, deformer)
+        """Give a deformer of this rest mesh; all that move the mesh share it."""
+        return self._deformers.get(vertices, faces, keep_volume)
 
     def close(self) -> None:
         """Close all files."""
@@ -111,7 +106,10 @@ class Media:
                 source.close()
             self._frames.clear()
             self._meshes.clear()
+            for frames in self._sequences.values():
+                frames.close()
+            self._sequences.clear()
             self._rooms.clear()
             self._prepared = None
-            self._deformer = None
+            self._deformers.clear()
             self.memory.clear()

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from app.model.character import Character
 from app.model.document import Document
 from app.model.tracks import Track
-from app.stages import animation, scene, tracking
+from app.stages import animation, performance, scene, tracking
 from app.stages.stage import Stage
 
 
@@ -85,6 +85,47 @@ class Stages:
             lambda: animation.comparison(self.document, self._character(character_id), variant),
         )
 
+    def features(self, sequence_id: str) -> Stage:
+        """What one pass over a sequence leaves."""
+        return self._of_sequence("features", sequence_id)
+
+    def distances(self, sequence_id: str) -> Stage:
+        """Frame and atom distances of a sequence."""
+        return self._of_sequence("distances", sequence_id)
+
+    def structure(self, sequence_id: str) -> Stage:
+        """The motions of a sequence."""
+        return self._of_sequence("structure", sequence_id)
+
+    def analysis(self, sequence_id: str) -> Stage:
+        """All that the motion graph needs to know of a sequence."""
+        return self._of_sequence("analysis", sequence_id)
+
+    @property
+    def database(self) -> Stage:
+        """Motions and transitions of all sequences, before pruning."""
+        return self._once("database", lambda: performance.database(self.document))
+
+    @property
+    def graph(self) -> Stage:
+        """The motion graph."""
+        return self._once("graph", lambda: performance.graph(self.document))
+
+    @property
+    def paths(self) -> Stage:
+        """The best path through the key motions and the next best."""
+        return self._once("paths", lambda: performance.paths(self.document))
+
+    @property
+    def performance(self) -> Stage:
+        """The chosen path with every clip in its place."""
+        return self._once("performance", lambda: performance.assembled(self.document))
+
+    @property
+    def blends(self) -> Stage:
+        """In-betweens at the cuts of the performance."""
+        return self._once("blends", lambda: performance.blended(self.document))
+
     def all(self) -> Iterator[Stage]:
         """Yield every stage that a person thinks of as a step of the project."""
         yield self.masks
@@ -97,12 +138,23 @@ class Stages:
             yield self.start(character.id)
             yield self.base(character.id)
             yield self.animation(character.id)
+        for sequence in self.document.sequences:
+            yield self.structure(sequence.id)
+        if self.document.sequences:
+            yield self.database
+        if self.document.performance.keys:
+            yield self.performance
+            yield self.blends
 
     def _track(self, track_id: str) -> Track:
         return self.document.track(track_id)
 
     def _character(self, character_id: str) -> Character:
         return self.document.character(character_id)
+
+    def _of_sequence(self, kind: str, sequence_id: str) -> Stage:
+        sequence = self.document.sequence(sequence_id)
+        return self._once(f"{kind}/{sequence_id}", lambda: getattr(performance, kind)(self.document, sequence))
 
     def _once(self, name: str, make: object) -> Stage:
         if name not in self._made:

@@ -1,0 +1,191 @@
+"""Sequences into a project, motions by name, and why a motion is out of reach."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import attrs
+
+from app.actions.session import Session
+from app.formats.tvm import guess_facts, open_mesh_frames
+from app.model.document import Document
+from app.model.edits import sequences
+from app.model.performance import CapturedSequence, Motion, SequenceUp
+from app.stages.results import Animation
+from imitation.errors import InputError, NoSolution
+
+
+@attrs.frozen
+class MotionName:
+    """A motion of the graph as people see it.
+
+    Attributes
+    ----------
+    node : number in the graph. name : "walk/2", the second motion of the sequence walk.
+    sequence : id. first, last : frames of the cluster. texton : first and last frame of what is played.
+    """
+
+    node: int
+    name: str
+    sequence: str
+    first: int
+    last: int
+    texton: tuple[int, int]
+    cyclic: bool
+    period: float
+    reason: str
+
+    @property
+    def motion(self) -> Motion:
+        """How the document refers to it."""
+        return Motion(self.sequence, self.texton[0])
+
+
+def add_sequence(
+    session: Session,
+    path: Path,
+    *,
+    name: str | None = None,
+    fps: float | None = None,
+    up: SequenceUp | None = None,
+    unit: float | None = None,
+    copy: bool = False,
+) -> tuple[str, str]:
+    """Add a sequence of meshes; gives its id, and a sentence on what was guessed or converted (empty if nothing).
+
+    Where the project has sequences already, it is played at their rate: at each time the nearest frame.
+
+    Raises ``InputError`` when it cannot be read.
+    """
+    with open_mesh_frames(path) as frames:
+        guess = guess_facts(frames, fps=fps, up=up, unit=unit)
+        count = len(frames)
+    chosen = name or (path.name if path.is_dir() else path.stem)
+    notes = [guess.why] if guess.why else []
+    rate, shown, converted = _played(session.document, chosen, count, guess.fps)
+    edit = sequences.add_sequence(
+        session.document,
+        name=chosen,
+        media=session.bring_in(path, copy=copy),
+        frame_count=shown,
+        fps=rate,
+        source_count=count,
+        source_fps=guess.fps,
+        up=guess.up,
+        unit=guess.unit,
+        guessed=guess.guessed,
+    )
+    made = session.apply(edit).sequences[-1]
+    return made.id, " ".join([*notes, converted]).strip()
+
+
+def add_character_motion(session: Session, character_id: str, *, name: str | None = None) -> tuple[str, str]:
+    """Add a character's animated motion as a sequence; see ``add_sequence``."""
+    document = session.document
+    character = document.character(character_id)
+    animated = session.ready(session.stages.animation(character_id))
+    if isinstance(animated, Animation):
+        count = len(animated)
+    elif document.clip is not None:
+        count = document.clip.frame_count
+    else:
+        raise InputError(f"{character.name} has no motion: the project has no clip.")
+    fps = document.clip.fps if document.clip is not None else 25.0
+    chosen = name or f"{character.name} as filmed"
+    rate, shown, converted = _played(document, chosen, count, fps)
+    edit = sequences.add_sequence(
+        document, name=chosen, character=character_id, frame_count=shown, fps=rate, source_count=count, source_fps=fps
+    )
+    return session.apply(edit).sequences[-1].id, converted
+
+
+def _played(document: Document, name: str, count: int, fps: float) -> tuple[float, int, str]:
+    """Rate and number of frames at which a new sequence is played, and a sentence where that is not its own."""
+    if not document.sequences or abs(document.sequences[0].fps - fps) <= 1e-6 * fps:
+        return fps, count, ""
+    rate = document.sequences[0].fps
+    shown = sequences.frames_at(count, fps, rate)
+    return rate, shown, f"{name} has {fps:g} frames a second and is played at {rate:g}: at each time the nearest frame."
+
+
+def sequence_named(document: Document, name: str | None) -> CapturedSequence:
+    """Give the sequence of this name or id; without a name the only one."""
+    if name is None and len(document.sequences) == 1:
+        return document.sequences[0]
+    for sequence in document.sequences:
+        if name in (sequence.name, sequence.id):
+            return sequence
+    known = ", ".join(sequence.name for sequence in document.sequences) or "none yet"
+    asked = "Which sequence?" if name is None else f"There is no sequence called {name}."
+    raise InputError(f"{asked} The sequences are {known}.")
+
+
+def motions(document: Document, graph: Any) -> list[MotionName]:
+    """Give all motions of the graph with their names."""
+    named = []
+    for number, node in enumerate(graph.nodes):
+        sequence = document.sequences[node.sequence]
+        cluster = graph.analyses[node.sequence].structure.clusters[node.cluster]
+        named.append(
+            MotionName(
+                node=number,
+                name=f"{sequence.name}/{node.cluster + 1}",
+                sequence=sequence.id,
+                first=cluster.first,
+                last=cluster.last,
+                texton=(node.first, node.last),
+                cyclic=cluster.cyclic,
+                period=cluster.period,
+                reason=cluster.reason,
+            )
+        )
+    return named
+
+
+def motion_named(document: Document, named: Sequence[MotionName], text: str) -> MotionName:
+    """Give the motion called "walk/2", the one at "walk@17" (a frame), or the only one of "walk".
+
+    Raises ``InputError`` with what there is.
+    """
+    for motion in named:
+        if text == motion.name:
+            return motion
+    at = re.fullmatch(r"(.+)@(\d+)", text)
+    if at is not None:
+        sequence = sequence_named(document, at[1])
+        for motion in named:
+            if motion.sequence == sequence.id and motion.first <= int(at[2]) <= motion.last:
+                return motion
+        raise InputError(f"{sequence.name} has no frame {at[2]}: it has frames 0 to {sequence.frame_count - 1}.")
+    alone = [motion for motion in named if motion.name.rsplit("/", 1)[0] == text]
+    if len(alone) == 1:
+        return alone[0]
+    known = ", ".join(motion.name for motion in named) or "none"
+    raise InputError(f"There is no motion called {text}: the motions are {known}.")
+
+
+def explained(error: Any, named: Sequence[MotionName]) -> NoSolution:
+    """Say with names which key motion is out of reach, the smallest mu that reaches it, and which edges that adds."""
+    start, goal = named[error.start].name, named[error.goal].name
+    if error.mu is None:
+        return NoSolution(
+            f"{goal} cannot be reached from {start} whatever mu is: allow what is forbidden, or choose another key "
+            "motion."
+        )
+    edges = " and ".join(f"{named[a].name} to {named[b].name}" for a, b in error.edges)
+    # The limit is exclusive, so what is named lies a little above it.
+    return NoSolution(
+        f"{goal} cannot be reached from {start}: the smallest mu that reaches it is {above(error.mu):.4g}, "
+        f"which adds {edges or 'nothing'}."
+    )
+
+
+def above(mu: float) -> float:
+    """Give a mu of four digits that is larger."""
+    import math
+
+    step = 10.0 ** (math.floor(math.log10(mu)) - 3) if mu > 0 else 1e-4
+    return math.floor(mu / step + 1) * step
