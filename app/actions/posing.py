@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.actions.session import Session
+from app.model.character import Character, PoseEdit
 from app.model.edits import Edit, poses
 from app.stages.project import Stages
 from app.stages.results import Animation, Array
@@ -28,7 +29,6 @@ class PoseDrag:
     session, character_id, frame : what is posed. Its motion before any edit must have been computed; frame 0 only needs
         the character to be placed.
     before : (v, 3) the frame as the user sees it, where its animation is still on its way; default the animation's.
-    former : an earlier drag; of the same character it lends what depends on the mesh alone.
 
     Raises
     ------
@@ -42,10 +42,7 @@ class PoseDrag:
         frame: int,
         *,
         before: Array | None = None,
-        former: PoseDrag | None = None,
     ) -> None:
-        from imitation.deformation import Deformer
-
         self.character_id, self.frame = character_id, frame
         base: Any = session.ready(_ground_of(session.stages, character_id, frame))
         animated = session.ready(session.stages.animation(character_id))
@@ -56,16 +53,13 @@ class PoseDrag:
             before = base.vertices[0]
         if base is None or before is None:
             raise InputError(f"{character.name} has not been animated yet: animate it, then pose it.")
-        self._base, self._volume = base, character.solve.keep_volume
+        self._base = base
         self._before: Array = np.array(before)
         edit = character.edits.get(frame)
         self._moves: dict[int, Array] = (
             {vertex: np.array(move.place) for vertex, move in edit.moves.items() if not move.muted} if edit else {}
         )
-        same = former is not None and former._volume == self._volume and np.array_equal(former._base.rest, base.rest)
-        self._deformer: Any = (
-            former._deformer if former and same else Deformer(base.rest, base.faces, keep_volume=self._volume)
-        )
+        self._deformer = session.media.deformer(base.rest, base.faces, character.solve.keep_volume)
         self._pose: object = self._before
 
     @property
@@ -123,35 +117,81 @@ def move_vertex(session: Session, character_id: str, frame: int, vertex: int, pl
 
 def delete_move(session: Session, character_id: str, frame: int, vertex: int) -> None:
     """Delete one vertex's move; what remains of the edited frame is committed anew, as one entry."""
-    _and_commit_anew(session, poses.delete_move(session.document, character_id, frame, vertex), character_id)
+    session.apply(committed_anew(session, poses.delete_move(session.document, character_id, frame, vertex)))
 
 
 def mute_move(session: Session, character_id: str, frame: int, vertex: int, muted: bool) -> None:
     """Mute one vertex's move or let it count again; the edited frame is committed anew, as one entry."""
-    _and_commit_anew(session, poses.mute_move(session.document, character_id, frame, vertex, muted), character_id)
+    session.apply(committed_anew(session, poses.mute_move(session.document, character_id, frame, vertex, muted)))
 
 
 def delete_control_vertex(session: Session, character_id: str, vertex: int) -> None:
     """Delete a control vertex in all frames; the frames it was moved in are committed anew, as one entry."""
-    _and_commit_anew(session, poses.delete_control_vertex(session.document, character_id, vertex), character_id)
+    session.apply(committed_anew(session, poses.delete_control_vertex(session.document, character_id, vertex)))
+
+
+def committed_anew(session: Session, edit: Edit) -> Edit:
+    """The edit with all its frames committed whose committed pose it has cleared; solves, but changes nothing.
+
+    It may be called in a thread of its own while the session's document stays as it is.
+    """
+    from imitation.propagation import commit_edit
+
+    document, before = edit.document, session.stages
+    for character in document.characters:
+        for frame, pose in character.edits.items():
+            moves = {vertex: np.array(move.place) for vertex, move in pose.moves.items() if not move.muted}
+            if not _open(pose):
+                continue
+            # As if the moves that are gone had never been: for frame 0 from the character as it was placed.
+            stages = Stages(document) if frame else before
+            ground: Any = session.result(_ground_of(stages, character.id, frame))
+            deformer = session.media.deformer(ground.rest, ground.faces, character.solve.keep_volume)
+            places = commit_edit(ground, frame, moves, pose=None if frame else ground.rest, deformer=deformer)
+            fresh = {vertex: (float(x), float(y), float(z)) for vertex, (x, y, z) in places.items()}
+            document = poses.recommit(document, character.id, frame, fresh).document
+    return Edit(document, edit.label, edit.frame)
+
+
+def is_committed(edit: Edit) -> bool:
+    """Whether an edit leaves no frame to be committed anew, so that it can be applied at once."""
+    return not any(_open(pose) for character in edit.document.characters for pose in character.edits.values())
+
+
+def _open(pose: PoseEdit) -> bool:
+    return not pose.committed and not all(move.muted for move in pose.moves.values())
+
+
+def make_ready(session: Session, character_id: str, frame: int | None = None, vertices: Iterable[int] = ()) -> None:
+    """Do in advance what the first drag, or the release of these vertices in a frame, would wait for.
+
+    It changes no result, may run in any thread, and does nothing where the character has no motion yet.
+    """
+    from imitation.propagation import typical_modes
+
+    document = session.document
+    character = document.character(character_id)
+    base: Any = session.ready(session.stages.base(character_id))
+    if base is None:
+        return
+    deformer = session.media.deformer(base.rest, base.faces, character.solve.keep_volume)
+    keys = set(base.keys.vertices.tolist())
+    typical_modes(base, deformer, [])
+    if frame is None:
+        return
+    around = sorted({*character.edits, frame})
+    place = around.index(frame)
+    controls = {int(vertex) for vertex in vertices} | _controls(character, frame)
+    for other in (None, *around[max(place - 1, 0) : place], *around[place + 1 : place + 2]):
+        both = controls | (set() if other is None else _controls(character, other))
+        typical_modes(base, deformer, sorted(both - keys))
+
+
+def _controls(character: Character, frame: int) -> set[int]:
+    edit = character.edits.get(frame)
+    return {vertex for vertex, move in edit.moves.items() if not move.muted} if edit else set()
 
 
 def _ground_of(stages: Stages, character_id: str, frame: int) -> Stage:
     """What a frame is edited on: the motion before any edit; for frame 0 the placed character, solved or not."""
     return stages.base(character_id) if frame else stages.start(character_id)
-
-
-def _and_commit_anew(session: Session, edit: Edit, character_id: str) -> None:
-    from imitation.propagation import commit_edit
-
-    document = edit.document
-    for frame, pose in document.character(character_id).edits.items():
-        moves = {vertex: np.array(move.place) for vertex, move in pose.moves.items() if not move.muted}
-        if pose.committed or not moves:
-            continue
-        # As if the moves that are gone had never been: for frame 0 from the character as it was placed.
-        ground: Any = session.result(_ground_of(Stages(document) if frame else session.stages, character_id, frame))
-        places = commit_edit(ground, frame, moves, pose=None if frame else ground.rest)
-        fresh = {vertex: (float(x), float(y), float(z)) for vertex, (x, y, z) in places.items()}
-        document = poses.recommit(document, character_id, frame, fresh).document
-    session.apply(Edit(document, edit.label, edit.frame))

@@ -181,9 +181,7 @@ def _start(context: Context, inputs: Any, world: World, aligned: AlignedCharacte
     if not committed:
         return placed
     deformer = context.media.deformer(aligned.vertices, aligned.faces, keep_volume)
-    posed = start_pose(placed, {vertex: np.array(place) for vertex, place in committed}, deformer=deformer)
-    context.media.return_deformer(aligned.vertices, keep_volume, deformer)
-    return posed
+    return start_pose(placed, {vertex: np.array(place) for vertex, place in committed}, deformer=deformer)
 
 
 def _base(context: Context, inputs: Any, world: World, placed: Any, *needs: Any) -> Any:
@@ -193,7 +191,7 @@ def _base(context: Context, inputs: Any, world: World, placed: Any, *needs: Any)
     tracks, contacts = needs[: len(needs) // 2], needs[len(needs) // 2 :]
     names = [name for name, _ in paired]
     deformer = context.media.deformer(placed.rest, placed.faces, keep_volume)
-    solved = solve_base(
+    return solve_base(
         placed.rest,
         placed.faces,
         world.cameras,
@@ -208,8 +206,6 @@ def _base(context: Context, inputs: Any, world: World, placed: Any, *needs: Any)
         progress=context.progress,
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),
     )
-    context.media.return_deformer(solved.rest, keep_volume, deformer)
-    return solved
 
 
 def _intervals(placed: list[PlacedContact]) -> list[tuple[int, int, Any]]:
@@ -240,7 +236,6 @@ def _animation(context: Context, inputs: Any, solved: Any) -> Animation:
         on_frame=lambda frame, vertices: context.emit((frame, vertices)),
         progress=context.progress,
     )
-    context.media.return_deformer(solved.rest, keep_volume, deformer)
     memory[("imitation", character)] = result
     return Animation(result.vertices, result.key_points, result.names, result.report.as_dict())
 
@@ -257,6 +252,4 @@ def _comparison(context: Context, inputs: Any, solved: Any) -> Any:
     variant, edits, keep_volume = inputs
     committed = {frame: {vertex: np.array(place) for vertex, place in places} for frame, places, _ in edits}
     deformer = context.media.deformer(solved.rest, solved.faces, keep_volume)
-    made = compare(solved, committed, variant, deformer=deformer, progress=context.progress)
-    context.media.return_deformer(solved.rest, keep_volume, deformer)
-    return made
+    return compare(solved, committed, variant, deformer=deformer, progress=context.progress)

@@ -50,6 +50,12 @@ class Keeper(QObject):
         motion = self._missing(self._motion()) if self.propagate_on_release and self._moved_before() else []
         self._want("motion", "Moving the character", [] if tracks else motion)
 
+    def _spread_from_here(self) -> None:
+        """Let motion be solved outward from the frame in sight; the order changes no result."""
+        memory = self.project.session.media.memory
+        for character in self.project.document.characters:
+            memory[("origin", character.id)] = self.project.frame
+
     def run_missing(self) -> bool:
         """Start everything that is missing, whatever is wanted automatically; says whether there was anything."""
         tracks, motion = self._missing(self._tracks()), self._missing([*self._cameras(), *self._motion()])
@@ -93,6 +99,7 @@ class Keeper(QObject):
             self._linger.start()
         self._asked[kind] = keys
         if stages:
+            self._spread_from_here()
             self._jobs[kind] = self.project.start(label, *stages)
         else:
             self._jobs.pop(kind, None)

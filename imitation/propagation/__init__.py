@@ -4,7 +4,7 @@ from imitation.motion.ambiguity import AmbiguousSpan
 from imitation.propagation.ambiguity import ambiguous_spans
 from imitation.propagation.base import Base, solve_base
 from imitation.propagation.compare import compare
-from imitation.propagation.edits import commit_edit, edit_constraints, edited_pose
+from imitation.propagation.edits import commit_edit, edit_constraints, edited_pose, typical_modes
 from imitation.propagation.imitate import imitate
 from imitation.propagation.propagate import Imitation, propagate
 from imitation.propagation.report import Report
@@ -25,4 +25,5 @@ __all__ = [
     "propagate",
     "solve_base",
     "start_pose",
+    "typical_modes",
 ]

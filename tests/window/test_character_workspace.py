@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 
 import numpy as np
@@ -10,6 +11,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.actions.session import Session
+from app.model.edits import characters
 from app.window.shell import Shell
 from app.window.viewport import Viewport
 from tests.window.conftest import at, drag, settle, wait_for
@@ -238,6 +240,7 @@ def test_mute_delete_and_reset(posed: Shell) -> None:
     settle()
     assert np.allclose(pose(posed, 10), old, atol=1e-9)
     QTest.mouseClick(inspector.mute_button, LEFT)
+    wait_for(lambda: not character(posed).edits[10].moves[nose].muted)
     wait_for(lambda: done(posed), 60)
     settle()
     assert not np.allclose(pose(posed, 10)[nose], old[nose], atol=1e-3)
@@ -252,6 +255,38 @@ def test_mute_delete_and_reset(posed: Shell) -> None:
     wait_for(lambda: done(posed), 60)
     settle()
     assert np.array_equal(pose(posed, 10), old)
+
+
+def test_committing_anew_does_not_hold_the_window_up(posed: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A muted move that counts again is solved in another thread; what was done meanwhile is not lost."""
+    from app.actions import posing
+
+    nose = vertex(posed, "nose")
+    drag_vertex(posed, nose, 20, -30)
+    wait_for(lambda: 10 in character(posed).edits)
+    wait_for(lambda: done(posed), 60)
+    settle()
+    inspector = posed.character.inspector
+    QTest.mouseClick(inspector.mute_button, LEFT)
+    threads, go, solve = [], threading.Event(), posing.committed_anew
+
+    def slow(*values: object) -> object:
+        threads.append(threading.current_thread())
+        assert go.wait(20)
+        return solve(*values)
+
+    monkeypatch.setattr("app.window.character.posing.actions.committed_anew", slow)
+    settle()
+    QTest.mouseClick(inspector.mute_button, LEFT)
+    wait_for(lambda: threads)
+    assert threads[0] is not threading.main_thread()
+    posed.project.edit(characters.rename_character, character(posed).id, "Fido")
+    go.set()
+    wait_for(lambda: not character(posed).edits[10].moves[nose].muted)
+    assert character(posed).name == "Fido"
+    assert character(posed).edits[10].committed
+    assert len(threads) == 2, "the document had changed, so it was solved for the new one"
+    wait_for(lambda: done(posed), 60)
 
 
 def test_looking_through_the_recovered_camera(posed: Shell) -> None:

@@ -86,7 +86,7 @@ class LivePose(QObject):
             try:
                 if target is not None and target is not served:
                     character_id, frame, before = target
-                    drag = PoseDrag(self._session, character_id, frame, before=before, former=drag)
+                    drag = PoseDrag(self._session, character_id, frame, before=before)
                 served = target
                 if drag is not None and target is not None:
                     self._step(drag, places, moved if release else set(), served)

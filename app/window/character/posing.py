@@ -11,12 +11,14 @@ from PySide6.QtCore import QObject, Signal
 
 from app.actions import posing as actions
 from app.model.character import Character
-from app.model.edits import characters, poses
+from app.model.edits import Edit, characters, poses
+from app.model.values import ModelError
 from app.window.background_call import BackgroundCalls
 from app.window.character.live import LivePose
 from app.window.character.motion import Motion
 from app.window.project import Project
 from app.window.work import details
+from imitation.errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -40,6 +42,7 @@ class Posing(QObject):
         self.live.failed.connect(self._failed)
         self.before: Array | None = None
         self._frame = -1
+        self._ready: set[tuple[object, ...]] = set()
 
     def possible(self, character: Character) -> bool:
         """Whether the character has a motion that can be edited."""
@@ -52,7 +55,21 @@ class Posing(QObject):
         if self.before is None:
             self.before, self._frame = np.array(shown), frame
             self.live.begin(character.id, frame, self.before)
+            self._make_ready(character, frame, vertex)
         self.live.move(vertex, place)
+
+    def make_ready(self, character: Character) -> None:
+        """Prepare in the background what the first drag of a character would wait for."""
+        self._make_ready(character)
+
+    def _make_ready(self, character: Character, *of: int) -> None:
+        # Of the same base each preparation is begun once; what it finds is kept with the project's media.
+        key = (self.project.session.stages.base(character.id).key, *of)
+        if key in self._ready or not self.possible(character):
+            return
+        self._ready.add(key)
+        session, frame, vertices = self.project.session, (of[0] if of else None), of[1:]
+        self.calls.run(lambda: actions.make_ready(session, character.id, frame, vertices), lambda _: None)
 
     def release(self) -> None:
         """Commit the pose."""
@@ -94,11 +111,11 @@ class Posing(QObject):
 
     def delete_move(self, vertex: int) -> None:
         """Delete the move of a vertex in the frame shown."""
-        self._again(actions.delete_move, self.project.frame, vertex)
+        self._again(poses.delete_move, self.project.frame, vertex)
 
     def mute(self, vertex: int, muted: bool) -> None:
         """Mute the move of a vertex in the frame shown, or let it count."""
-        self._again(actions.mute_move, self.project.frame, vertex, muted)
+        self._again(poses.mute_move, self.project.frame, vertex, muted)
 
     def delete_selected(self) -> None:
         """Delete the selected vertex's move of this frame, else the vertex as a control vertex, else its pair."""
@@ -111,17 +128,36 @@ class Posing(QObject):
         if edit is not None and project.vertex in edit.moves:
             self.delete_move(project.vertex)
         elif any(project.vertex in each.moves for each in character.edits.values()):
-            self._again(actions.delete_control_vertex, project.vertex)
+            self._again(poses.delete_control_vertex, project.vertex)
         elif paired is not None:
             project.edit(characters.remove_pair, character.id, paired)
 
-    def _again(self, call: Callable[..., Any], *values: Any) -> None:
+    def _again(self, make: Callable[..., Edit], *values: Any) -> None:
+        """Do an edit that commits frames anew: they are solved outside the window's thread."""
+        session, document = self.project.session, self.project.document
         try:
-            call(self.project.session, self.project.character_id, *values)
-        except Exception as error:  # noqa: BLE001 - whatever stops it is told
+            edit = make(document, self.project.character_id, *values)
+        except (ModelError, InputError) as error:
             self.told.emit(str(error), details(error))
-        self.motion.held.clear()
-        self.changed.emit()
+            return
+
+        def apply(solved: Edit) -> None:
+            if session.document is not document:
+                # Something else was done meanwhile: the same wish on what there is now.
+                self._again(make, *values)
+                return
+            session.apply(solved)
+            self.motion.held.clear()
+            self.changed.emit()
+
+        if actions.is_committed(edit):
+            apply(edit)
+            return
+        self.calls.run(
+            lambda: actions.committed_anew(session, edit),
+            apply,
+            lambda error: self.told.emit(str(error), details(error)),
+        )
 
     def close(self) -> None:
         """End the threads."""

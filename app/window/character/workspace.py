@@ -176,6 +176,8 @@ class CharacterWorkspace(QWidget):
             vertices = shape.standing
         if len(vertices) != len(shape.standing):
             return
+        if self.posing is not None:
+            self.posing.make_ready(character)
         self.mesh.header.title.setText(character.name)
         self.mesh.header.caption.setText(f"{len(vertices):,} vertices  ·  {len(character.pairs)} pairs")
         self.mesh.show_mesh(vertices, shape.faces, shape.colours)

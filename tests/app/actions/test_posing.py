@@ -105,6 +105,36 @@ def test_a_drag_follows_the_mouse_and_commits_what_was_seen(session: Session) ->
     assert set(committed) == {vertex, *session.document.characters[0].pairs.values()}
 
 
+def test_what_is_made_ready_is_all_that_a_release_needs(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After it no slow direction is looked for and no mesh is factored until the edit has spread; the bits agree."""
+    import imitation.deformation.modes as slow
+    import imitation.deformation.system as system
+
+    character = session.document.characters[0].id
+    before = animated(session)
+    vertex = free_vertex(session, before)
+    place = before[FRAME, vertex] + [0, 0, 0.05]
+    posing.move_vertex(session, character, FRAME, vertex, place)
+    cold = animated(session)
+    session.undo()
+    session.cache._held.clear()
+    session.cache.store.clear()  # type: ignore[union-attr]
+    session.media.memory.clear()
+    session.media._deformers.clear()
+    animated(session)
+    session.media._deformers.clear()
+    posing.make_ready(session, character)
+    posing.make_ready(session, character, FRAME, [vertex])
+
+    def never(*given: object) -> None:
+        raise AssertionError("this was to be ready")
+
+    monkeypatch.setattr(slow, "slow_modes", never)
+    monkeypatch.setattr(system, "factorise", never)
+    posing.move_vertex(session, character, FRAME, vertex, place)
+    assert np.array_equal(animated(session), cold)
+
+
 def test_posing_before_animating_says_what_to_do(session: Session) -> None:
     """A character whose inputs changed has to be animated first."""
     from app.model.edits import tracks
