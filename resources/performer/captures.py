@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from resources.performer.motions import MOTIONS
-from resources.performer.sequence import Capture, Part, perform
+from resources.performer.script import Part
+from resources.performer.sequence import Capture, perform
 
 ONE_SHOT = ("kick", "squat", "bend", "side bend", "jumping jack")
 FAMILIES = (("walk", "march"), ("wave", "wave both"), ("punch", "march"), ("bend", "squat"), ("twist", "side bend"))

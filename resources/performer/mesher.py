@@ -23,7 +23,7 @@ def _triangles() -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 @njit(cache=True, nogil=True)
-def _nearest_capsule(points, capsules):  # pragma: no cover - compiled
+def nearest_capsule(points, capsules):  # pragma: no cover - compiled
     """Row of the capsule whose surface is nearest to each point (n, 3)."""
     nearest = np.zeros(len(points), np.int64)
     for i in range(len(points)):
@@ -161,7 +161,7 @@ def body_mesh(
     shape = tuple(int(n) for n in np.ceil((high - low) / cell) + 2)
     field = _grid(capsules, waves, low, shape, cell)
     vertices, faces = _march(field, low, cell, np.array(EDGES), *_triangles())
-    nearest = _nearest_capsule(vertices, capsules)
+    nearest = nearest_capsule(vertices, capsules)
     return vertices, faces, _colours(capsules, vertices, nearest)
 
 

@@ -10,20 +10,12 @@ from numpy.typing import NDArray
 
 from resources.performer.mesher import body_mesh
 from resources.performer.motions import PERIODS, TRAVELLING, WHOLE_CIRCLES, motion_pose
-from resources.performer.skeleton import POSE_VALUES, SHOULDER, SWAY, body_capsules, body_joints
+from resources.performer.script import Part, laid_out, low_pass, phases
+from resources.performer.skeleton import SHOULDER, SWAY, body_capsules, body_joints
 
 Array = NDArray[np.float64]
 LIMBS = ([7, 8, 9], [8, 9], [13, 14, 15], [14, 15], [11, 12], [17, 18])
 """Capsules that a broken capture may miss: arms, forearms, legs, shanks."""
-
-
-@attrs.frozen
-class Part:
-    """One motion of a script: its name, how often it is repeated, and how its speed changes over the part."""
-
-    motion: str
-    repeats: float = 4
-    speed_up: float = 1.0
 
 
 @attrs.frozen(eq=False)
@@ -144,13 +136,16 @@ def perform(
     rate = fps * np.ceil(120 / fps)
     period_sd = (0.07 if hard else 0.05) if period_spread is None else period_spread
     amplitude_sd = (0.08 if hard else 0.05) if amplitude_spread is None else amplitude_spread
-    tracks = [_phases(part, rate, random, period_sd, amplitude_sd) for part in script]
+    tracks = [phases(part, PERIODS[part.motion], rate, random, period_sd, amplitude_sd) for part in script]
     gaps = [int(rate * random.uniform(0.3, 0.6)) for _ in script[1:]]
-    poses, part, phase, travel, middles = _blend(script, tracks, gaps)
+    turned = dict.fromkeys(WHOLE_CIRCLES, slice(SHOULDER, SHOULDER + 2))
+    poses, part, phase, travel, middles = laid_out(
+        script, tracks, gaps, motion_pose, travelling=TRAVELLING, turning=turned
+    )
     steps = len(poses)
-    poses[:, SWAY] += 0.025 * _low_pass(random.standard_normal(steps), 0.8 * rate)
+    poses[:, SWAY] += 0.025 * low_pass(random.standard_normal(steps), 0.8 * rate)
     turn = (0.6 if hard else 0.0) if turning is None else turning
-    yaw_rate = turn * np.clip(0.6 * _low_pass(random.standard_normal(steps), 1.5 * rate), -1, 1)
+    yaw_rate = turn * np.clip(0.6 * low_pass(random.standard_normal(steps), 1.5 * rate), -1, 1)
     joints, headings = _walk_on(poses, travel, np.cumsum(yaw_rate) / rate)
     stride = round(rate / fps)
     return Capture(
@@ -168,61 +163,6 @@ def perform(
         cell_spread=0.12 if hard else 0.0,
         broken=broken,
     )
-
-
-def _phases(
-    part: Part, rate: float, random: np.random.Generator, period_sd: float, amplitude_sd: float
-) -> tuple[Array, Array]:
-    """Phase and amplitude of one part at each step; amplitudes run smoothly from repeat to repeat."""
-    cycles = int(np.ceil(part.repeats)) + 2
-    periods = PERIODS[part.motion] * np.exp(period_sd * random.standard_normal(cycles))
-    periods /= part.speed_up ** np.linspace(0.0, 1.0, cycles)
-    knots = np.exp(amplitude_sd * random.standard_normal(cycles + 1))
-    starts = np.r_[0.0, np.cumsum(periods)]
-    length = float(np.interp(part.repeats, np.arange(cycles + 1), starts))
-    times = np.arange(max(2, round(length * rate))) / rate
-    phase = np.interp(times, starts, np.arange(cycles + 1))
-    return phase + random.random(), np.interp(phase, np.arange(cycles + 1), knots)
-
-
-def _blend(
-    script: Sequence[Part], tracks: list[tuple[Array, Array]], gaps: list[int]
-) -> tuple[Array, NDArray[np.int64], Array, Array, list[int]]:
-    """Lay the parts one after another, both motions running through each transition."""
-    total = sum(len(phase) for phase, _ in tracks)
-    poses, weights = np.zeros((total, POSE_VALUES)), np.zeros(total)
-    part, phase_of, travel = np.zeros(total, np.int64), np.zeros(total), np.zeros(total)
-    middles, first = [], 0
-    for index, (item, (phase, amplitude)) in enumerate(zip(script, tracks, strict=True)):
-        last = first + len(phase)
-        before = gaps[index - 1] // 2 if index else 0
-        after = gaps[index] // 2 if index < len(gaps) else 0
-        step = np.arange(max(0, first - before), min(total, last + after))
-        speed_in, speed_out = phase[1] - phase[0], phase[-1] - phase[-2]
-        local = step - first
-        run = np.interp(local, np.arange(len(phase)), phase)
-        run += np.minimum(local, 0) * speed_in + np.maximum(local - len(phase) + 1, 0) * speed_out
-        size = np.interp(local, np.arange(len(phase)), amplitude)
-        rise = _smoothstep((local + before) / max(1, 2 * before)) if before else np.ones(len(step))
-        fall = _smoothstep((len(phase) + after - local) / max(1, 2 * after)) if after else np.ones(len(step))
-        weight = rise * fall
-        rows = np.array([motion_pose(item.motion, p, a) for p, a in zip(run, size, strict=True)])
-        if item.motion in WHOLE_CIRCLES:
-            # Within a transition the arm must not wind through a whole turn: count turns from its middle.
-            turns = np.floor(run)
-            for near in ((before, 0), (after, len(phase))):
-                if near[0]:
-                    inside = np.abs(local - near[1]) <= near[0]
-                    centre = np.round(np.interp(near[1], local, run))
-                    rows[inside, SHOULDER : SHOULDER + 2] += (2 * np.pi * (turns - centre))[inside, None]
-        poses[step] += weight[:, None] * rows
-        weights[step] += weight
-        travel[step] += weight * (item.motion in TRAVELLING)
-        part[first:last], phase_of[first:last] = index, phase
-        if index:
-            middles.append(first)
-        first = last
-    return poses / weights[:, None], part, phase_of, travel / weights, middles
 
 
 def _walk_on(poses: Array, travel: Array, headings: Array) -> tuple[Array, Array]:
@@ -243,17 +183,3 @@ def _walk_on(poses: Array, travel: Array, headings: Array) -> tuple[Array, Array
         joints[step] = local[step]
         joints[step, :, :2] = local[step, :, :2] @ turn.T + place
     return joints, headings
-
-
-def _smoothstep(x: Array) -> Array:
-    inside = np.clip(x, 0.0, 1.0)
-    return inside * inside * (3.0 - 2.0 * inside)
-
-
-def _low_pass(noise: Array, width: float) -> Array:
-    """Gaussian low-pass of white noise, scaled back to unit variance."""
-    from scipy.ndimage import gaussian_filter1d
-
-    smooth = gaussian_filter1d(noise, width / 2.5, mode="reflect")
-    spread = float(np.sqrt(2 * np.sqrt(np.pi) * width / 2.5))
-    return np.asarray(smooth * spread)

@@ -10,7 +10,7 @@ from imitation.errors import InputError
 from resources.world.body import Body
 from resources.world.footfalls import Footfall, Gait, ease, foot_path, footfalls, gait_of
 from resources.world.rotation import about, align, compose
-from resources.world.skeleton import Array, Leg, two_links
+from resources.world.skeleton import Array, Leg, Skeleton, two_links
 from resources.world.terrain import FLAT, STAIRS, Stairs
 
 Interval = tuple[int, int, Array]
@@ -84,10 +84,10 @@ def walk(
     if start is None:
         start = -0.86 if kind == "quadruped" else -0.6
     steps = steps or footfalls(gait, ground, frames, start, phase, seed)
-    joints = _Pose(body, frames)
-    feet = {leg.name: _place_foot(joints, leg, steps[leg.name], gait, frames) for leg in body.skeleton.legs}
+    joints = BonePose(body.skeleton, frames)
+    feet = {leg.name: _place_foot(joints, body, leg, steps[leg.name], gait, frames) for leg in body.skeleton.legs}
     _trunk(joints, gait, ground, start, phase, seed)
-    _legs(joints)
+    bend_legs(joints)
     _ends(joints, gait, phase, seed)
     rotations, translations = joints.motions()
     vertices = body.pose(rotations, translations)
@@ -100,16 +100,16 @@ def walk(
     return Walk(body, ground, rotations, translations, vertices, keys, contacts, steps)
 
 
-class _Pose:
+class BonePose:
     """Motions of the bones over all frames while they are put together."""
 
-    def __init__(self, body: Body, frames: int) -> None:
-        self.body, self.frames = body, frames
-        self.skeleton = body.skeleton
+    def __init__(self, skeleton: Skeleton, frames: int) -> None:
+        self.skeleton, self.frames = skeleton, frames
         self.R: dict[str, Array] = {}
         self.t: dict[str, Array] = {}
 
     def joint(self, name: str) -> Array:
+        """Where (3,) a bone's joint is in the rest pose."""
         return self.skeleton.bones[name].head
 
     def put(self, name: str, rotation: Array, rest: Array, place: Array) -> None:
@@ -128,16 +128,16 @@ class _Pose:
         self.put(name, self.R[parent] @ local, self.joint(name), self.apply(parent, self.joint(name)))
 
     def motions(self) -> tuple[Array, Array]:
+        """Rotations (n, bones, 3, 3) and translations (n, bones, 3) from the rest pose."""
         names = list(self.skeleton.bones)
         return np.stack([self.R[n] for n in names], axis=1), np.stack([self.t[n] for n in names], axis=1)
 
 
 def _place_foot(
-    joints: _Pose, leg: Leg, stances: list[Footfall], gait: Gait, frames: int
+    joints: BonePose, body: Body, leg: Leg, stances: list[Footfall], gait: Gait, frames: int
 ) -> dict[str, list[tuple[int, int]]]:
     """Put a foot on its path; says in which frames the vertex of each of its soles stands still."""
     place, swing, late, planted = foot_path(stances, gait, frames)
-    body = joints.body
     middle = np.mean([spot for _, spot in leg.soles], axis=0)
     roll = np.zeros(frames)
     if body.skeleton.kind == "quadruped":
@@ -156,13 +156,13 @@ def _place_foot(
     return {leg.soles[0][0]: heel, leg.soles[1][0]: planted}
 
 
-def _wave(joints: _Pose, gait: Gait, phase: float, harmonic: float, shift: float = 0.0) -> Array:
+def _wave(joints: BonePose, gait: Gait, phase: float, harmonic: float, shift: float = 0.0) -> Array:
     cycles = np.arange(joints.frames) / gait.cycle + phase
     wave: Array = np.sin(2 * np.pi * (harmonic * cycles + shift))
     return wave
 
 
-def _trunk(joints: _Pose, gait: Gait, ground: Stairs, start: float, phase: float, seed: int) -> None:
+def _trunk(joints: BonePose, gait: Gait, ground: Stairs, start: float, phase: float, seed: int) -> None:
     """Carry pelvis and chest over the slope, as low as the legs need it."""
     frames, skeleton = joints.frames, joints.skeleton
     quad = skeleton.kind == "quadruped"
@@ -201,12 +201,12 @@ def _trunk(joints: _Pose, gait: Gait, ground: Stairs, start: float, phase: float
             break
 
 
-def _links(joints: _Pose, leg: Leg) -> tuple[float, float]:
+def _links(joints: BonePose, leg: Leg) -> tuple[float, float]:
     hip, knee, ankle = (joints.joint(name) for name in (leg.upper, leg.lower, leg.foot))
     return float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
 
 
-def _overreach(joints: _Pose, leg: Leg) -> Array:
+def _overreach(joints: BonePose, leg: Leg) -> Array:
     """By how much (n,) the hip must come down so that the leg reaches its foot."""
     parent = joints.skeleton.bones[leg.upper].parent or ""
     hip, ankle = joints.apply(parent, joints.joint(leg.upper)), joints.apply(leg.foot, joints.joint(leg.foot))
@@ -216,7 +216,8 @@ def _overreach(joints: _Pose, leg: Leg) -> Array:
     return need
 
 
-def _legs(joints: _Pose) -> None:
+def bend_legs(joints: BonePose) -> None:
+    """Put the links of each leg between its hip and its foot, which must have their places."""
     for leg in joints.skeleton.legs:
         parent = joints.skeleton.bones[leg.upper].parent or ""
         rest = [joints.joint(name) for name in (leg.upper, leg.lower, leg.foot)]
@@ -229,7 +230,7 @@ def _legs(joints: _Pose) -> None:
         joints.put(leg.lower, align(rest[2] - rest[1], rest_hinge, ankle - knee, hinge), rest[1], knee)
 
 
-def _ends(joints: _Pose, gait: Gait, phase: float, seed: int) -> None:
+def _ends(joints: BonePose, gait: Gait, phase: float, seed: int) -> None:
     """Neck, head, ears and tail of a quadruped; neck, head and arms of a biped."""
     rng = np.random.default_rng([seed, 9])
     a, b, c = rng.uniform(0.7, 1.3, 3)

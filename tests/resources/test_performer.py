@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import attrs
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from resources.performer import (
     MOTIONS,
@@ -13,9 +15,12 @@ from resources.performer import (
     body_mesh,
     motion_pose,
     perform,
+    perform_hound,
     random_script,
 )
 from resources.performer.cube_table import EDGES, cube_triangles
+from resources.world.sample import load
+from resources.world.skeleton import quadruped
 
 
 def edge_uses(faces: np.ndarray) -> np.ndarray:
@@ -84,3 +89,40 @@ def test_hard_captures_turn_and_vary() -> None:
     capture = perform([Part("march", 6)], fps=10, seed=8, hard=True)
     assert np.ptp(capture.headings) > 0.3
     assert len({len(capture.mesh(frame)[0]) for frame in range(5)}) == 5
+
+
+def test_the_hound_performs_as_its_character_is() -> None:
+    """Closed meshes of its own in every frame, on the ground, as thick and coloured as the sample's hound."""
+    capture = perform_hound([Part("walk", 2), Part("bow", 1)], seed=1, cell=0.03)
+    assert capture.names == ("walk", "bow")
+    hound = load().characters["hound"]
+    counts = set()
+    for frame in range(0, len(capture), 7):
+        vertices, faces, colours = capture.mesh(frame)
+        counts.add(len(vertices))
+        assert (edge_uses(faces) == 2).all()
+        assert abs(vertices[:, 2].min()) < 1e-9
+        assert colours.shape == vertices.shape
+    assert len(counts) > 3
+    rest = attrs.evolve(
+        capture,
+        rotations=np.tile(np.eye(3), (1, 25, 1, 1)),
+        translations=np.zeros((1, 25, 3)),
+    )
+    vertices, _, colours = rest.mesh(0)
+    near, index = cKDTree(hound.moving.rest).query(vertices)
+    assert np.median(near) < 0.012
+    assert np.abs(colours.astype(int) - hound.colours[index]).mean() < 12
+
+
+def test_the_hounds_standing_feet_do_not_slide() -> None:
+    """While a paw stands in a walk its sole keeps its place to millimetres a frame."""
+    capture = perform_hound([Part("walk", 3)], seed=2)
+    leg = next(leg for leg in quadruped().legs if leg.name == "left hind")
+    bone = list(quadruped().bones).index(leg.foot)
+    sole = capture.rotations[:, bone] @ leg.soles[0][1] + capture.translations[:, bone]
+    stands = (sole[:-1, 2] < 2e-3) & (sole[1:, 2] < 2e-3)
+    steps = np.abs(np.diff(sole[:, 0]))[stands]
+    assert stands.sum() > 20
+    assert np.median(steps) < 0.004
+    assert sole[-1, 0] - sole[0, 0] > 1.0
