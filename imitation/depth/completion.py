@@ -1,0 +1,230 @@
+"""The background behind the subject: depth and colour from the frames that see it (paper A, 3.1)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.cameras.path import CameraPath
+from imitation.depth.colours import choose_depth, gains, gather
+from imitation.depth.depthmap import DepthMap
+from imitation.depth.pictures import Pictures
+from imitation.depth.projection import consensus, projected
+from imitation.errors import InputError
+from imitation.geometry.projection import Camera
+
+SOURCES = 10  # key frames whose depth is brought to a frame
+DONORS = 28  # frames whose colours are looked at, near ones first
+NEAREST = 8  # of them that see a place give its colour
+SEAM = 1.5  # pixels over which the fill blends into the frame, at a width of 960
+
+
+@attrs.frozen(eq=False)
+class Plate:
+    """A frame without the subject.
+
+    Attributes
+    ----------
+    frame : which frame.
+    picture : uint8 RGB (h, w, 3).
+    depth : of the background everywhere, also behind the subject.
+    filled : bool (h, w) where the picture was filled from other frames.
+    invented : bool (h, w) where no frame sees the background and it was painted in from around.
+    """
+
+    frame: int
+    picture: NDArray[np.uint8]
+    depth: DepthMap
+    filled: NDArray[np.bool_]
+    invented: NDArray[np.bool_]
+
+
+class Background:
+    """All that is known of a clip's background: gives any frame's depth and clean plate.
+
+    Parameters
+    ----------
+    frames : sequence of uint8 RGB (h, w, 3).
+    cameras : one a frame.
+    maps : depth of the key frames, at the frames' size.
+    masks : sequence of bool (h, w), True on the subject and its shadow, or None.
+    """
+
+    def __init__(
+        self, frames: Sequence[Any], cameras: CameraPath, maps: Sequence[DepthMap], *, masks: Sequence[Any] | None = None
+    ) -> None:
+        if not maps:
+            raise InputError("A background needs the depth of at least one frame.")
+        if len(cameras) != len(frames):
+            raise InputError(f"There are {len(cameras)} cameras for {len(frames)} frames; give one a frame.")
+        self.maps = sorted(maps, key=lambda each: each.frame)
+        self.pictures = Pictures(frames, cameras, masks, longest=1 << 20)
+        if self.maps[0].depth.shape != self.pictures.size[::-1]:
+            raise InputError(
+                f"The depth maps are {self.maps[0].depth.shape[::-1]} pixels, but the frames are {self.pictures.size}."
+            )
+        middle = float(np.nanmedian(self.maps[len(self.maps) // 2].depth))
+        self.tolerance = 1.5 * self.maps[0].tolerance / middle**2
+        """Difference of inverse depths that counts as the same surface."""
+
+    def depth(self, frame: int) -> DepthMap:
+        """Depth of any frame as far as the key frames give it: a key frame's own, else by projection (not filled)."""
+        for each in self.maps:
+            if each.frame == frame:
+                return each
+        near = self._nearest(frame, 6)
+        layers = np.stack([projected(each, self.camera(frame), self.pictures.size, least=1) for each in near])
+        rank = 1 / (1 + 0.15 * np.arange(len(near)))
+        inverse, support = consensus(layers, self.tolerance, rank.astype(np.float32))
+        if (inverse <= 0).any():
+            # Where nothing is confirmed, what the nearest key frames hold is better than nothing.
+            spare = np.stack([projected(each, self.camera(frame), self.pictures.size) for each in near])
+            loose, _ = consensus(spare, self.tolerance, rank.astype(np.float32))
+            inverse = np.where(inverse > 0, inverse, loose)
+        return self._map(frame, inverse, support)
+
+    def plate(self, frame: int) -> Plate:
+        """The frame without the subject, with depth everywhere."""
+        import cv2
+
+        own = self.depth(frame)
+        picture = self.pictures.colour(frame)
+        hole = self.pictures.hidden(frame) > 0
+        with np.errstate(divide="ignore"):
+            inverse = np.nan_to_num(1 / own.depth, nan=0.0).astype(np.float32)
+        wanted = hole | (inverse <= 0)
+        donors = self._donors(frame)
+        stack, hidden, poses = self._stack(donors)
+        scale = gains(picture, hole, inverse, self.camera(frame), stack, hidden, poses)
+        rows, columns = np.nonzero(wanted)
+        found, colour, seen = self._behind(frame, rows, columns, stack, hidden, poses, scale)
+        inverse[rows, columns] = found
+        fill = picture.astype(np.float32)
+        known = ~wanted
+        known[rows[seen > 0], columns[seen > 0]] = True
+        painted = hole[rows, columns] & (seen > 0)
+        fill[rows[painted], columns[painted]] = colour[painted]
+        filled = np.zeros_like(hole)
+        filled[rows[painted], columns[painted]] = True
+        invented = hole & ~filled
+        done: NDArray[np.uint8] = np.clip(np.rint(fill), 0, 255).astype(np.uint8)
+        if invented.any():
+            done = cv2.inpaint(done, invented.astype(np.uint8), 5, cv2.INPAINT_TELEA)
+        done = _seamless(picture, done, hole)
+        inverse = _extended(inverse, invented)
+        support = np.where(hole, 0, own.confidence).astype(np.uint8)
+        support[rows[painted], columns[painted]] = np.minimum(seen[painted], 255)
+        depth = attrs.evolve(self._map(frame, inverse, support), invented=invented)
+        return Plate(frame, done, depth, filled, invented)
+
+    def camera(self, frame: int) -> Camera:
+        """A frame's camera."""
+        return self.pictures.cameras[frame]
+
+    def _map(self, frame: int, inverse: NDArray[np.float32], support: NDArray[np.uint8]) -> DepthMap:
+        with np.errstate(divide="ignore"):
+            depth = np.where(inverse > 0, 1 / inverse, np.nan).astype(np.float32)
+        return DepthMap(frame, depth, support, self.camera(frame), self.maps[0].tolerance)
+
+    def _nearest(self, frame: int, count: int) -> list[DepthMap]:
+        return sorted(self.maps, key=lambda each: (abs(each.frame - frame), each.frame))[:count]
+
+    def _donors(self, frame: int) -> list[int]:
+        """Frames to take colours from: all near ones, ever fewer farther away; near ones first."""
+        count = len(self.pictures)
+        away, chosen = 1, []
+        while len(chosen) < DONORS and away < count:
+            chosen += [t for t in (frame - away, frame + away) if 0 <= t < count]
+            away += 1 + away // 10
+        return chosen[:DONORS]
+
+    def _stack(self, donors: Sequence[int]) -> tuple[NDArray[np.uint8], NDArray[np.uint8], list[Camera]]:
+        stack = np.stack([self.pictures.colour(t) for t in donors])
+        hidden = np.stack([self.pictures.hidden(t) for t in donors])
+        return stack, hidden, [self.camera(t) for t in donors]
+
+    def _behind(
+        self,
+        frame: int,
+        rows: NDArray[np.int64],
+        columns: NDArray[np.int64],
+        stack: NDArray[np.uint8],
+        hidden: NDArray[np.uint8],
+        poses: list[Camera],
+        scale: NDArray[np.float32],
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]:
+        """Inverse depth (k,), colour (k, 3) and number of frames that see it, of the pixels wanted."""
+        sources = self._spread(frame)
+        camera, size = self.camera(frame), self.pictures.size
+        loose = np.stack([projected(each, camera, size)[rows, columns] for each in sources], axis=1)
+        firm = np.stack([projected(each, camera, size, least=3)[rows, columns] for each in sources], axis=1)
+        inverse = choose_depth(rows, columns, loose, firm, camera, stack, hidden, poses, scale, self.tolerance)
+        inverse = _voted(inverse, rows, columns, size, self.tolerance)
+        colour, seen = gather(rows, columns, inverse, camera, stack, hidden, poses, scale, NEAREST)
+        return inverse, colour, seen
+
+    def _spread(self, frame: int) -> list[DepthMap]:
+        """Key frames that give depth behind the subject: the nearest, and some from farther away on both sides."""
+        order = self._nearest(frame, len(self.maps))
+        near = order[: SOURCES // 2]
+        rest = order[SOURCES // 2 :]
+        step = max(1, -(-len(rest) // (SOURCES - len(near))))
+        return near + rest[::step]
+
+
+def _voted(
+    inverse: NDArray[np.float32],
+    rows: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    size: tuple[int, int],
+    tolerance: float,
+) -> NDArray[np.float32]:
+    """Take single pixels that stand out from their surroundings back into them: the median of 5 x 5 known ones."""
+    import cv2
+
+    picture = np.zeros(size[::-1], np.float32)
+    picture[rows, columns] = inverse
+    middle = cv2.medianBlur(picture, 5)[rows, columns]
+    stray = (inverse > 0) & (middle > 0) & (np.abs(inverse - middle) > 2 * tolerance)
+    empty = (inverse <= 0) & (middle > 0)
+    return np.where(stray | empty, middle, inverse).astype(np.float32)
+
+
+def _seamless(
+    picture: NDArray[np.uint8], filled: NDArray[np.uint8], hole: NDArray[np.bool_]
+) -> NDArray[np.uint8]:
+    """Blend a fill into the frame along the hole's rim, inside the hole."""
+    import cv2
+
+    if not hole.any():
+        return picture
+    inside = cv2.distanceTransform(hole.astype(np.uint8), cv2.DIST_L2, 3)
+    width = SEAM * max(hole.shape) / 960
+    alpha = np.clip(inside / width, 0, 1)[..., None]
+    mixed: NDArray[np.uint8] = np.rint(picture + alpha * (filled.astype(np.float32) - picture)).astype(np.uint8)
+    return mixed
+
+
+def _extended(inverse: NDArray[np.float32], hole: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Depth where no view has any: from around, smoothly (the far side wins: what is hidden lies behind)."""
+    import cv2
+
+    missing = hole | (inverse <= 0)
+    if not missing.any() or missing.all():
+        return inverse
+    known = np.where(missing, 0, inverse).astype(np.float32)
+    weight = (~missing).astype(np.float32)
+    result = known.copy()
+    open_ = missing.copy()
+    radius = 2.0
+    while open_.any() and radius < 4 * max(inverse.shape):
+        total, share = cv2.GaussianBlur(known, (0, 0), radius), cv2.GaussianBlur(weight, (0, 0), radius)
+        here = open_ & (share > 0.02)
+        result[here] = total[here] / share[here]
+        open_ &= ~here
+        radius *= 2
+    return result

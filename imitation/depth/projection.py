@@ -1,0 +1,110 @@
+# mypy: disable-error-code="untyped-decorator"
+"""Depth of one frame as another frame's camera sees it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from imitation.depth.depthmap import DepthMap
+from imitation.depth.sweep import geometry
+from imitation.geometry.projection import Camera
+
+FRONT = 0.03  # relative depth within which splats belong to one surface
+
+
+def projected(source: DepthMap, camera: Camera, size: tuple[int, int], least: int = 0) -> NDArray[np.float32]:
+    """Inverse depth (h, w) that a map gives to the pixels of another camera, 0 where none.
+
+    Every pixel of the map covers the four pixels round its place; the nearest surface wins, and what belongs to it is
+    averaged by nearness.
+
+    Parameters
+    ----------
+    camera, size : of the picture wanted, (width, height) pixels.
+    least : confidence that a pixel of the map needs to count.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = np.where(source.confidence >= least, np.nan_to_num(1 / source.depth, nan=0.0), 0).astype(np.float32)
+    here = (source.camera.K, source.camera.R, source.camera.T)
+    maps = geometry(here, [(camera.K, camera.R, camera.T)])
+    shape = size[::-1]
+    front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+    for collect in (False, True):
+        _splat(inverse, maps.A[0], maps.b[0], front, total, weight, collect)
+    return np.where(weight > 0, total / np.maximum(weight, np.float32(1e-12)), 0).astype(np.float32)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _splat(inverse: Any, A: Any, b: Any, front: Any, total: Any, weight: Any, collect: bool) -> None:
+    height, width = front.shape
+    for y in range(inverse.shape[0]):
+        for x in range(inverse.shape[1]):
+            w = inverse[y, x]
+            if w <= 0:
+                continue
+            z = A[2, 0] * x + A[2, 1] * y + A[2, 2] + w * b[2]
+            if z <= 0:
+                continue
+            u = (A[0, 0] * x + A[0, 1] * y + A[0, 2] + w * b[0]) / z
+            v = (A[1, 0] * x + A[1, 1] * y + A[1, 2] + w * b[1]) / z
+            if not (u > -1 and v > -1 and u < width and v < height):
+                continue
+            there = w / z
+            iu, iv = int(np.floor(u)), int(np.floor(v))
+            for dy in range(2):
+                for dx in range(2):
+                    px, py = iu + dx, iv + dy
+                    if px < 0 or py < 0 or px >= width or py >= height:
+                        continue
+                    share = (1 - abs(u - px)) * (1 - abs(v - py))
+                    if not collect:
+                        # A splat that hardly touches a pixel must not hide what lies behind it.
+                        if share > 0.1 and there > front[py, px]:
+                            front[py, px] = there
+                    elif there >= front[py, px] * (1 - FRONT):
+                        total[py, px] += np.float32(share * there)
+                        weight[py, px] += np.float32(share)
+
+
+def consensus(
+    layers: NDArray[np.float32], tolerance: float, rank: NDArray[np.float32] | None = None
+) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """The inverse depth (h, w) that most layers (k, h, w) support, 0 where none has one, and how many do.
+
+    Parameters
+    ----------
+    layers : 0 where a layer has nothing. tolerance : difference that still counts as support.
+    rank : (k,) worth of each layer's support, 1 each where None; of equal supports the nearer surface wins.
+    """
+    best = np.zeros(layers.shape[1:], np.float32)
+    support = np.zeros(layers.shape[1:], np.uint8)
+    worth = np.ones(len(layers), np.float32) if rank is None else rank.astype(np.float32)
+    _vote(layers, np.float32(tolerance), worth, best, support)
+    return best, support
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _vote(layers: Any, tolerance: Any, worth: Any, best: Any, support: Any) -> None:
+    count, height, width = layers.shape
+    for y in range(height):
+        for x in range(width):
+            top = np.float32(-1)
+            for i in range(count):
+                w = layers[i, y, x]
+                if w <= 0:
+                    continue
+                votes, total, weight, number = np.float32(0), np.float32(0), np.float32(0), 0
+                for j in range(count):
+                    if layers[j, y, x] > 0 and abs(layers[j, y, x] - w) <= tolerance:
+                        votes += worth[j]
+                        total += worth[j] * layers[j, y, x]
+                        weight += worth[j]
+                        number += 1
+                if votes > top + 1e-6 or (votes > top - 1e-6 and w > best[y, x]):
+                    top = votes
+                    best[y, x] = total / weight
+                    support[y, x] = min(number, 255)

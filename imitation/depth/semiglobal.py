@@ -1,0 +1,113 @@
+# mypy: disable-error-code="untyped-decorator"
+"""Semi-global matching (Hirschmueller 2008): smooth along eight paths, cheaper where the picture has an edge."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+SMALL, LARGE, LEAST = 20, 320, 60  # penalties of a step of one plane, and of a larger one: at no edge, at least
+SOFTENING = 8.0  # grey levels over which the larger penalty halves
+_FAR = 8000  # no path comes from outside the volume
+
+
+def semiglobal(
+    volume: NDArray[np.uint8], grey: NDArray[np.uint8], *, small: int = SMALL, large: int = LARGE, least: int = LEAST
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Choose a plane for every pixel.
+
+    Parameters
+    ----------
+    volume : (h, w, d) cost of each plane.
+    grey : (h, w) the picture.
+
+    Returns
+    -------
+    plane : (h, w) index of the best plane, with a parabola's fraction.
+    margin : (h, w) how much worse the best plane is than the best of those not beside it, cost of one path.
+    """
+    steps = np.arange(256, dtype=np.float64)
+    table = np.maximum(large / (1 + steps / SOFTENING), least).round().astype(np.int16)
+    total = np.zeros(volume.shape, np.uint16)
+    _paths(volume, grey, np.int16(small), table, total, False)
+    _paths(volume, grey, np.int16(small), table, total, True)
+    plane = np.empty(grey.shape, np.float32)
+    margin = np.empty(grey.shape, np.float32)
+    _choose(total, plane, margin)
+    return plane, margin
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _step(cost: Any, before: Any, least: Any, small: Any, large: Any, after: Any, total: Any) -> Any:
+    """One pixel further along a path (all but the ends of ``before`` and ``after`` are planes); its least cost."""
+    depth = cost.shape[0]
+    jump = np.int16(least + large)
+    lowest = np.int16(32767)
+    for d in range(depth):
+        aside = np.int16(min(before[d], before[d + 2]) + small)
+        best = min(min(before[d + 1], aside), jump)
+        value = np.int16(np.int16(cost[d]) + np.int16(best - least))
+        after[d + 1] = value
+        total[d] += np.uint16(value)
+        lowest = min(lowest, value)
+    return lowest
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _paths(volume: Any, grey: Any, small: Any, table: Any, total: Any, backward: bool) -> None:
+    """Four of the eight paths: along the row, and from the row before, straight and both ways aslant."""
+    height, width, depth = volume.shape
+    # Two rows of path costs for the three paths from the row before; two pixels for the one along the row.
+    rows = np.full((2, 3, width, depth + 2), _FAR, np.int16)
+    lowest = np.zeros((2, 3, width), np.int16)
+    along = np.full((2, depth + 2), _FAR, np.int16)
+    start = np.zeros(depth + 2, np.int16)
+    way = -1 if backward else 1
+    for k in range(height):
+        y = height - 1 - k if backward else k
+        now, last = k % 2, 1 - k % 2
+        least = np.int16(0)
+        for j in range(width):
+            x = width - 1 - j if backward else j
+            cost, sums, g = volume[y, x], total[y, x], np.int64(grey[y, x])
+            here, before = along[j % 2], along[1 - j % 2]
+            if j == 0:
+                least = _step(cost, start, np.int16(0), small, np.int16(0), here, sums)
+            else:
+                least = _step(cost, before, least, small, table[abs(g - np.int64(grey[y, x - way]))], here, sums)
+            for p in range(3):
+                source = x + p - 1
+                if k == 0 or source < 0 or source >= width:
+                    lowest[now, p, x] = _step(cost, start, np.int16(0), small, np.int16(0), rows[now, p, x], sums)
+                else:
+                    large = table[abs(g - np.int64(grey[y - way, source]))]
+                    lowest[now, p, x] = _step(
+                        cost, rows[last, p, source], lowest[last, p, source], small, large, rows[now, p, x], sums
+                    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _choose(total: Any, plane: Any, margin: Any) -> None:
+    height, width, depth = total.shape
+    for y in range(height):
+        for x in range(width):
+            sums = total[y, x]
+            best = 0
+            for d in range(1, depth):
+                if sums[d] < sums[best]:
+                    best = d
+            value = float(best)
+            if 0 < best < depth - 1:
+                before, here, after = float(sums[best - 1]), float(sums[best]), float(sums[best + 1])
+                bend = before - 2 * here + after
+                if bend > 0:
+                    value += 0.5 * (before - after) / bend
+            plane[y, x] = value
+            second = 65535.0
+            for d in range(depth):
+                if abs(d - best) > 2:
+                    second = min(second, float(sums[d]))
+            margin[y, x] = (second - float(sums[best])) / 8

@@ -1,0 +1,185 @@
+"""Dense depth of the background (paper A, 3.1): two sweeps over each key frame, the second led by its neighbours."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.cameras.path import CameraPath
+from imitation.depth.agreement import agreeing
+from imitation.depth.checks import Range, check_input, find_range
+from imitation.depth.depthmap import DepthMap, resized
+from imitation.depth.pictures import LONGEST, Pictures
+from imitation.depth.semiglobal import semiglobal
+from imitation.depth.sweep import geometry, sweep
+from imitation.depth.views import choose_views, key_frames
+from imitation.errors import InputError
+from imitation.progress import Progress, silent
+
+PLANES, PLANES_LARGE = 96, 128
+LARGE = 700  # pixels on the longest side from which there are more planes
+
+
+@attrs.frozen(eq=False)
+class Sketch:
+    """Depth of one frame after a pass, at working size.
+
+    Attributes
+    ----------
+    frame : which frame. inverse : float32 (h, w) inverse depth. margin : float32 (h, w) how sure the choice was.
+    """
+
+    frame: int
+    inverse: NDArray[np.float32]
+    margin: NDArray[np.float32]
+
+
+class DepthSolver:
+    """Depth of the frames of one clip, a frame at a time: ``first`` for all, then ``second``, then ``finish``.
+
+    Each call depends on its arguments only, so that frames can be spread over machines.
+
+    Parameters
+    ----------
+    frames, cameras, masks : see ``background_depth``.
+    longest : working size, pixels on the longest side.
+    reach : depths to search; found here where None.
+    planes : how many depths are tried, evenly spaced in inverse depth.
+    """
+
+    def __init__(
+        self,
+        frames: Sequence[Any],
+        cameras: CameraPath,
+        masks: Sequence[Any] | None = None,
+        *,
+        longest: int = LONGEST,
+        reach: Range | None = None,
+        planes: int | None = None,
+    ) -> None:
+        check_input(frames, cameras, masks)
+        self.pictures = Pictures(frames, cameras, masks, longest)
+        self.reach = reach or find_range(frames, cameras, masks)
+        count = planes or (PLANES_LARGE if max(self.pictures.size) > LARGE else PLANES)
+        self.planes = np.linspace(1 / self.reach.far, 1 / self.reach.near, count).astype(np.float32)
+        self.step = float(self.planes[1] - self.planes[0])
+        self.sigma = 1.0 if max(self.pictures.size) <= LARGE else 2.0
+
+    def key_frames(self) -> list[int]:
+        """Frames whose depth serves all others."""
+        return key_frames(self.pictures.cameras, self.reach.middle)
+
+    def views(self, frame: int, keys: Sequence[int]) -> list[int]:
+        """The frames in which a frame's depth is measured."""
+        return choose_views(self.pictures.cameras, frame, set(keys), self.pictures.full, self.reach.middle)
+
+    def first(self, frame: int, keys: Sequence[int]) -> Sketch:
+        """Depth from the pictures alone."""
+        return self._pass(frame, keys, {})
+
+    def second(self, frame: int, sketches: Mapping[int, Sketch]) -> Sketch:
+        """Depth from the pictures and from what the first pass found in the other frames."""
+        return self._pass(frame, list(sketches), {f: s for f, s in sketches.items() if f != frame})
+
+    def finish(self, frame: int, sketches: Mapping[int, Sketch]) -> DepthMap:
+        """The depth map of a frame, with the number of the others that agree, at the size of the frames."""
+        import cv2
+
+        pictures = self.pictures
+        camera = pictures.camera(frame)
+        others = [s for f, s in sketches.items() if f != frame]
+        count = agreeing(
+            sketches[frame].inverse, camera, [s.inverse for s in others], [pictures.camera(s.frame) for s in others],
+            1.5 * self.step,
+        )  # fmt: skip
+        inverse = resized(sketches[frame].inverse, pictures.full, 3 * self.step)
+        confidence = cv2.resize(count, pictures.full, interpolation=cv2.INTER_NEAREST_EXACT)
+        depth = (1 / inverse).astype(np.float32)
+        if pictures.masks is not None:
+            hidden = np.asarray(pictures.masks[frame]).astype(bool)
+            depth[hidden], confidence[hidden] = np.nan, 0
+        return DepthMap(frame, depth, confidence, pictures.cameras[frame], self.step * self.reach.middle)
+
+    def _pass(self, frame: int, keys: Sequence[int], known: Mapping[int, Sketch]) -> Sketch:
+        pictures = self.pictures
+        views = self.views(frame, keys)
+
+        def pose(t: int) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+            camera = pictures.camera(t)
+            return camera.K, camera.R, camera.T
+
+        prior = None
+        if known:
+            nothing = np.zeros(pictures.size[::-1], np.float32)
+            prior = np.stack([known[v].inverse if v in known else nothing for v in views])
+        volume = sweep(
+            pictures.signal(frame), pictures.hidden(frame), np.stack([pictures.signal(v) for v in views]),
+            geometry(pose(frame), [pose(v) for v in views]), self.planes, prior, self.sigma,
+        )  # fmt: skip
+        plane, margin = semiglobal(volume, pictures.grey(frame))
+        return Sketch(frame, (self.planes[0] + plane * np.float32(self.step)).astype(np.float32), margin)
+
+
+def background_depth(
+    frames: Sequence[Any],
+    cameras: CameraPath,
+    *,
+    masks: Sequence[Any] | None = None,
+    frames_to_solve: Sequence[int] | None = None,
+    longest: int = LONGEST,
+    progress: Progress | None = None,
+) -> list[DepthMap]:
+    """Dense depth of the static background in a sparse set of frames (paper A, 3.1).
+
+    A plane sweep over up to eight views at several baselines, semi-global matching, then the same again with what
+    the other solved frames found as a prior. Differs from Zhang et al. 2009, the paper's reference [33], which
+    optimises by belief propagation over all frames.
+
+    Parameters
+    ----------
+    frames : sequence of uint8 RGB (h, w, 3); read a frame at a time, few are kept.
+    cameras : one a frame, pixels of the frames; ``x_cam = R x + T``.
+    masks : sequence of bool (h, w), True on the subject and its shadow; left out, and its rim with it.
+    frames_to_solve : which frames, or None for key frames chosen by baseline. A lone frame has no others to agree
+        with: its confidence is 0.
+    longest : larger frames are solved at this size (pixels on the longest side) and the depth brought back.
+    progress : gets fractions in [0, 1]; may raise ``Cancelled``.
+
+    Returns
+    -------
+    list of DepthMap
+        ``frame``, ``depth`` (h, w) camera z in world units, NaN under the mask, ``confidence`` (h, w), how many of the
+        other solved frames agree; in the order of the frames.
+
+    Raises
+    ------
+    InputError
+        Frames, cameras and masks that do not belong together, or masks that cover everything.
+    NoSolution
+        No parallax (a camera that stands still or only turns, a flat or infinitely far background).
+    """
+    report = progress or silent
+    report(0.0)
+    solver = DepthSolver(frames, cameras, masks, longest=longest)
+    chosen = solver.key_frames() if frames_to_solve is None else sorted(set(map(int, frames_to_solve)))
+    for frame in chosen:
+        if not 0 <= frame < len(frames):
+            raise InputError(f"Frame {frame} cannot be solved: the clip has frames 0 to {len(frames) - 1}.")
+    total = 2 * len(chosen)
+    sketches = {}
+    for done, frame in enumerate(chosen):
+        sketches[frame] = solver.first(frame, chosen)
+        report((done + 1) / total * 0.98)
+    if len(chosen) > 1:
+        better = {}
+        for done, frame in enumerate(chosen, start=len(chosen)):
+            better[frame] = solver.second(frame, sketches)
+            report((done + 1) / total * 0.98)
+        sketches = better
+    maps = [solver.finish(frame, sketches) for frame in chosen]
+    report(1.0)
+    return maps

@@ -1,0 +1,263 @@
+# mypy: disable-error-code="untyped-decorator"
+"""Plane sweep: how badly each plane of a pencil explains each pixel, measured in several other frames.
+
+Cost of a pixel and a plane in one view (TAD): truncated differences of intensity, less its local mean so that a
+drifting exposure does no harm, and of the gradient, averaged over 3 x 3 pixels. Of all views that see the place, the
+mean of the best ones counts: a view in which the place is hidden must not speak.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import attrs
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+INTENSITY, GRADIENT = 0.35, 0.65  # shares of the two differences in the cost
+INTENSITY_CUT, GRADIENT_CUT = 20.0, 12.0  # grey levels from which a difference is as bad as can be
+SHARE = 0.75  # of the views that see a place: the best are averaged
+NEUTRAL = 128  # cost where nothing can be said
+FLOOR = 0.3  # what the geometric prior leaves at least of a likelihood
+ENOUGH = 5  # of the 9 pixels round a place must be seen
+MOST_VIEWS = 8
+
+_ONE = 4096  # one pixel seen, in a sum that counts pixels in its upper four bits
+
+
+@attrs.frozen(eq=False)
+class Geometry:
+    """Where a view sees the reference's pixels: ``a = A (x, y, 1)``, ``(u, v) ~ a + w b`` for inverse depth w.
+
+    Attributes
+    ----------
+    A : float32 (n, 3, 3). b : float32 (n, 3).
+    back_A, back_b : the same from each view to the reference.
+    """
+
+    A: NDArray[np.float32]
+    b: NDArray[np.float32]
+    back_A: NDArray[np.float32]
+    back_b: NDArray[np.float32]
+
+
+def geometry(
+    reference: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    views: list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]],
+) -> Geometry:
+    """Maps between cameras (K, R, T) and the views."""
+
+    def between(first: Any, second: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        (K1, R1, T1), (K2, R2, T2) = first, second
+        turn = R2 @ R1.T
+        return K2 @ turn @ np.linalg.inv(K1), K2 @ (T2 - turn @ T1)
+
+    there = [between(reference, view) for view in views]
+    back = [between(view, reference) for view in views]
+    stacks = ([A for A, _ in there], [b for _, b in there], [A for A, _ in back], [b for _, b in back])
+    return Geometry(*(np.ascontiguousarray(stack, np.float32) for stack in stacks))
+
+
+def sweep(
+    signal: NDArray[np.float32],
+    hidden: NDArray[np.uint8],
+    views: NDArray[np.float32],
+    maps: Geometry,
+    planes: NDArray[np.float32],
+    prior: NDArray[np.float32] | None = None,
+    sigma: float = 1.0,
+) -> NDArray[np.uint8]:
+    """Cost volume (h, w, d), 0 to 255.
+
+    Parameters
+    ----------
+    signal : (h, w, 4) intensity less its local mean, its two gradients, 1 where masked; grey levels.
+    hidden : (h, w) 1 where the subject hides the background: every plane costs the same there.
+    views : (n, h, w, 4) the same of at most ``MOST_VIEWS`` other frames.
+    maps : where the views see the pixels.
+    planes : (d,) inverse depths of the planes, evenly spaced.
+    prior : (n, h, w) inverse depth known in each view, 0 where none: a plane that would be seen where another depth is
+        known loses likelihood with the round-trip error in pixels, scale ``sigma``, at most 1 - ``FLOOR`` of it.
+    """
+    height, width = hidden.shape
+    volume = np.empty((height, width, len(planes)), np.uint8)
+    known = np.zeros((len(views), 1, 1), np.float32) if prior is None else prior
+    network = np.array(_network(MOST_VIEWS), np.int64)
+    _sweep(
+        signal, hidden, views, maps.A, maps.b, maps.back_b, planes, known, prior is not None,
+        np.float32(1 / (2 * sigma * sigma)), network, volume,
+    )  # fmt: skip
+    return volume
+
+
+def _network(count: int) -> list[tuple[int, int]]:
+    """Pairs to compare and exchange that sort ``count`` values (Batcher's odd-even merge; count a power of two)."""
+    pairs = []
+    p = 1
+    while p < count:
+        k = p
+        while k >= 1:
+            for j in range(k % p, count - k, 2 * k):
+                for i in range(min(k, count - j - k)):
+                    if (i + j) // (2 * p) == (i + j + k) // (2 * p):
+                        pairs.append((i + j, i + j + k))
+            k //= 2
+        p *= 2
+    return pairs
+
+
+@njit(cache=True, nogil=True, error_model="numpy", fastmath={"contract", "reassoc", "nsz", "arcp"})
+def _raw(
+    signal: Any, view: Any, y: int, A: Any, b: Any, back_b: Any, planes: Any, known: Any, guided: bool, tight: Any,
+    row: Any,
+) -> None:  # fmt: skip
+    """Cost of each pixel of a row and each plane in one view, plus ``_ONE`` where it is seen, else 0."""
+    height, width = signal.shape[0], signal.shape[1]
+    wide, high = np.float32(width - 1.001), np.float32(height - 1.001)
+    half = np.float32(0.5)
+    one, nothing = np.float32(1), np.float32(0)
+    low = np.float32(INTENSITY_CUT)
+    steep = np.float32(GRADIENT_CUT)
+    weigh_i = np.float32(255 * INTENSITY / INTENSITY_CUT)
+    weigh_g = np.float32(255 * GRADIENT / GRADIENT_CUT)
+    for x in range(width):
+        if signal[y, x, 3] > 0:
+            row[x + 1, :] = 0
+            continue
+        fx, fy = np.float32(x), np.float32(y)
+        a0 = A[0, 0] * fx + A[0, 1] * fy + A[0, 2]
+        a1 = A[1, 0] * fx + A[1, 1] * fy + A[1, 2]
+        a2 = A[2, 0] * fx + A[2, 1] * fy + A[2, 2]
+        s0, s1, s2 = signal[y, x, 0], signal[y, x, 1], signal[y, x, 2]
+        # How far the pixel seen from the view moves when the view's inverse depth changes.
+        p0, p1 = back_b[0] - fx * back_b[2], back_b[1] - fy * back_b[2]
+        speed = (p0 * p0 + p1 * p1) * tight
+        for d in range(planes.shape[0]):
+            w = planes[d]
+            z = a2 + w * b[2]
+            if z <= nothing:
+                row[x + 1, d] = 0
+                continue
+            over = one / z
+            u, v = (a0 + w * b[0]) * over, (a1 + w * b[1]) * over
+            if not (u >= nothing and v >= nothing and u < wide and v < high):
+                row[x + 1, d] = 0
+                continue
+            iu, iv = int(u), int(v)
+            q, r = u - np.float32(iu), v - np.float32(iv)
+            c11 = q * r
+            c01, c10 = q - c11, r - c11
+            c00 = one - q - c10
+            if view[iv, iu, 3] + view[iv, iu + 1, 3] + view[iv + 1, iu, 3] + view[iv + 1, iu + 1, 3] > nothing:
+                row[x + 1, d] = 0
+                continue
+            i = c00 * view[iv, iu, 0] + c01 * view[iv, iu + 1, 0] + c10 * view[iv + 1, iu, 0]
+            i += c11 * view[iv + 1, iu + 1, 0]
+            g = c00 * view[iv, iu, 1] + c01 * view[iv, iu + 1, 1] + c10 * view[iv + 1, iu, 1]
+            g += c11 * view[iv + 1, iu + 1, 1]
+            h = c00 * view[iv, iu, 2] + c01 * view[iv, iu + 1, 2] + c10 * view[iv + 1, iu, 2]
+            h += c11 * view[iv + 1, iu + 1, 2]
+            cost = weigh_i * min(abs(i - s0), low) + weigh_g * min(abs(g - s1) + abs(h - s2), steep)
+            if guided:
+                there = known[int(v + half), int(u + half)]
+                if there > nothing:
+                    # z1 / z2 = 1 / z: the inverse depth of the plane in the view is w / z.
+                    apart = there - w * over
+                    back = over + apart * back_b[2]
+                    e = speed * apart * apart / (back * back)
+                    # exp(-e) where it is above the floor, by (1 - e / 8)^8.
+                    keep = np.float32(FLOOR)
+                    if e < np.float32(1.35):
+                        keep = one - e * np.float32(0.125)
+                        keep *= keep
+                        keep *= keep
+                        keep *= keep
+                        keep = max(keep, np.float32(FLOOR))
+                    cost = np.float32(255) - (np.float32(255) - cost) * keep
+            row[x + 1, d] = np.uint16(cost + half) + np.uint16(_ONE)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _across(row: Any, out: Any) -> None:
+    """Sum over three neighbouring pixels of a row."""
+    for x in range(out.shape[0]):
+        left, middle, right, total = row[x], row[x + 1], row[x + 2], out[x]
+        for d in range(out.shape[1]):
+            total[d] = np.uint16(left[d] + middle[d]) + right[d]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _mean(sums: Any, rows: Any, x: int, count: int, values: Any, seen: Any) -> None:
+    """Mean cost (8, d) of a pixel's surroundings in each view, 4095 where too little is seen; how many views see it."""
+    depth = values.shape[1]
+    seen[:] = 0
+    for n in range(values.shape[0]):
+        out = values[n]
+        if n >= count:
+            out[:] = 4095
+            continue
+        first, second, third = sums[rows[0], n, x], sums[rows[1], n, x], sums[rows[2], n, x]
+        for d in range(depth):
+            total = np.uint16(np.uint16(first[d] + second[d]) + third[d])
+            number = np.float32(total >> 12)
+            mean = np.float32(total & 4095) / max(number, np.float32(1)) + np.float32(0.5)
+            good = number >= np.float32(ENOUGH)
+            out[d] = np.int16(mean) if good else np.int16(4095)
+            seen[d] += np.int16(1) if good else np.int16(0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _best_share(values: Any, seen: Any, network: Any, total: Any, out: Any) -> None:
+    """Mean of the best ``SHARE`` of the views (values is sorted in place)."""
+    depth = values.shape[1]
+    for k in range(network.shape[0]):
+        low, high = values[network[k, 0]], values[network[k, 1]]
+        for d in range(depth):
+            a, b = low[d], high[d]
+            low[d] = min(a, b)
+            high[d] = max(a, b)
+    total[:] = 0
+    for n in range(values.shape[0]):
+        row = values[n]
+        for d in range(depth):
+            # The n-th best counts when n < SHARE * seen, rounded up.
+            used = np.float32(n) < np.float32(SHARE) * np.float32(seen[d])
+            total[d] += row[d] if used else np.int16(0)
+    for d in range(depth):
+        number = np.float32(np.int16(np.float32(SHARE) * np.float32(seen[d]) + np.float32(0.9999)))
+        mean = np.float32(total[d]) / max(number, np.float32(1)) + np.float32(0.5)
+        out[d] = np.uint8(mean) if seen[d] > 0 else np.uint8(NEUTRAL)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _sweep(
+    signal: Any, hidden: Any, views: Any, A: Any, b: Any, back_b: Any, planes: Any, known: Any, guided: bool,
+    tight: Any, network: Any, volume: Any,
+) -> None:  # fmt: skip
+    height, width = hidden.shape
+    count, depth = views.shape[0], planes.shape[0]
+    row = np.zeros((width + 2, depth), np.uint16)
+    sums = np.zeros((3, count, width, depth), np.uint16)
+    values = np.empty((8, depth), np.int16)
+    seen = np.empty(depth, np.int16)
+    total = np.empty(depth, np.int16)
+    rows = np.zeros(3, np.int64)
+    for y in range(height + 1):
+        into = y % 3
+        if y < height:
+            for n in range(count):
+                _raw(signal, views[n], y, A[n], b[n], back_b[n], planes, known[n], guided, tight, row)
+                _across(row, sums[into, n])
+        else:
+            sums[into] = 0
+        if y == 0:
+            continue
+        for k in range(3):
+            rows[k] = (y + k) % 3
+        for x in range(width):
+            if hidden[y - 1, x]:
+                volume[y - 1, x, :] = NEUTRAL
+                continue
+            _mean(sums, rows, x, count, values, seen)
+            _best_share(values, seen, network, total, volume[y - 1, x])
