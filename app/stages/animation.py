@@ -13,12 +13,14 @@ from app.model.tracks import Track
 from app.model.values import Point3
 from app.stages import scene, tracking
 from app.stages.context import Context
+from app.stages.once import once
 from app.stages.results import AlignedCharacter, Animation, PlacedContact, World
 from app.stages.stage import Stage
 
 NO_PAIRS = "Pair at least three tracks with vertices of the character first."
 
 
+@once
 def alignment(document: Document, character: Character) -> Stage:
     """The character on the subject in the first frame."""
     label = f"Placing {character.name}"
@@ -29,6 +31,7 @@ def alignment(document: Document, character: Character) -> Stage:
     return Stage(f"alignment/{character.id}", label, _alignment, inputs, needs, blocked=blocked, weight=0.1)
 
 
+@once
 def start(document: Document, character: Character) -> Stage:
     """The character in frame 0 as the user posed it: part of placing it, before anything is solved."""
     paired = _paired(document, character)
@@ -39,6 +42,7 @@ def start(document: Document, character: Character) -> Stage:
     return Stage(f"start/{character.id}", label, _start, inputs, needs, weight=0.1)
 
 
+@once
 def base(document: Document, character: Character) -> Stage:
     """The character's motion before any edit but that of frame 0, which it begins with."""
     paired = _paired(document, character)
@@ -57,6 +61,7 @@ def base(document: Document, character: Character) -> Stage:
     return Stage(f"base/{character.id}", label, _base, inputs, needs, blocked=blocked, weight=seconds)
 
 
+@once
 def animation(document: Document, character: Character) -> Stage:
     """The character's motion with all edits."""
     edits = _edits(character)

@@ -10,6 +10,7 @@ from app.model.document import Document
 from app.model.tracks import Track
 from app.model.values import Clip, KeyMask
 from app.stages.context import Context
+from app.stages.once import once
 from app.stages.results import Masks
 from app.stages.stage import Stage
 
@@ -18,6 +19,7 @@ FLOW_SECONDS = 0.15
 CLICK = tuple[int, float, float]
 
 
+@once
 def flow(document: Document) -> Stage:
     """Dense optical flow between neighbouring frames, both ways."""
     clip = document.clip
@@ -26,6 +28,7 @@ def flow(document: Document) -> Stage:
     return Stage("flow", "Following the picture", _flow, (clip,), weight=FLOW_SECONDS * clip.frame_count)
 
 
+@once
 def masks(document: Document) -> Stage:
     """The subject's mask in every frame; None where no mask was drawn."""
     clip = document.clip
@@ -36,6 +39,7 @@ def masks(document: Document) -> Stage:
     return Stage("masks", "Carrying the masks", _masks, (clip, keys), needs, weight=0.05 * clip.frame_count)
 
 
+@once
 def spans(document: Document, track: Track) -> tuple[Stage, ...]:
     """The spans of a track, each between two clicks or from one to an open end."""
     from imitation.tracking import plan_spans
@@ -59,6 +63,7 @@ def spans(document: Document, track: Track) -> tuple[Stage, ...]:
     )
 
 
+@once
 def track(document: Document, track: Track) -> Stage:
     """A track: its spans put together, with what the user said of hidden frames."""
     if document.clip is None:

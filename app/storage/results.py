@@ -14,6 +14,8 @@ import numpy as np
 
 from app.formats.atomic import explained
 
+MAPPED = 1 << 22
+"""Bytes from which on a file is mapped and not read."""
 _TRUSTED = ("imitation.", "tvmedit.", "app.")
 
 
@@ -97,10 +99,11 @@ def _decode(body: Any, folder: Path) -> Any:
     if "float" in body:
         return float(body["float"])
     if "array" in body:
-        array = np.load(folder / f"{int(body['array'])}.npy", mmap_mode="r", allow_pickle=False)
-        if array.nbytes < 1 << 22:
-            array = np.array(array)
-            array.setflags(write=False)
+        path = folder / f"{int(body['array'])}.npy"
+        if path.stat().st_size >= MAPPED:
+            return np.load(path, mmap_mode="r", allow_pickle=False)
+        array = np.load(path, allow_pickle=False)
+        array.setflags(write=False)
         return array
     if "tuple" in body:
         return tuple(_decode(item, folder) for item in body["tuple"])

@@ -9,6 +9,7 @@ from PySide6.QtCore import QSize
 from PySide6.QtGui import QIcon, QPixmap
 
 from app.window import theme
+from app.window.drawings import Drawing
 
 NAMES = {
     "video": "movie-open-outline",
@@ -72,10 +73,7 @@ NAMES = {
 
 @cache
 def _icon(name: str, normal: str, checked: str, disabled: str) -> QIcon:
-    import qtawesome
-
-    drawing = f"mdi6.{NAMES[name]}"
-    return qtawesome.icon(drawing, color=normal, color_on=checked, color_disabled=disabled)
+    return QIcon(Drawing(NAMES[name], normal, checked, disabled))
 
 
 def icon(name: str, token: str = "text2", checked: str = "accent") -> QIcon:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from tvmedit.cuts import Blend, Seam
-from tvmedit.graph import Performance
-from tvmedit.measuring import Measurement
+if TYPE_CHECKING:
+    # Only names: the engine loads slowly, and the window opens without it.
+    from tvmedit.cuts import Blend, Seam
+    from tvmedit.graph import Performance
+    from tvmedit.measuring import Measurement
 
 
 @attrs.frozen(eq=False)
