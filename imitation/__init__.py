@@ -16,6 +16,7 @@ from imitation.geometry import Camera
 if TYPE_CHECKING:
     from imitation.cameras.solve import solve_cameras
     from imitation.deformation import Deformer, FrameConstraints
+    from imitation.depth import Background, BackgroundMesh, DepthMap, Plate, background_depth, background_mesh
     from imitation.motion import (
         align_character,
         anchor_depths,
@@ -27,6 +28,12 @@ if TYPE_CHECKING:
     from imitation.tracking import Track, carry_masks, compute_flow, suggest_correction, track_point, track_span
 
 _PARTS = {
+    "Background": "depth",
+    "BackgroundMesh": "depth",
+    "DepthMap": "depth",
+    "Plate": "depth",
+    "background_depth": "depth",
+    "background_mesh": "depth",
     "track_span": "tracking",
     "suggest_correction": "tracking",
     "ambiguous_spans": "propagation",
@@ -51,18 +58,24 @@ _PARTS = {
 }
 
 __all__ = [
+    "Background",
+    "BackgroundMesh",
     "Camera",
     "CameraPath",
     "Cancelled",
     "Deformer",
+    "DepthMap",
     "FrameConstraints",
     "Imitation",
     "InputError",
     "NoSolution",
+    "Plate",
     "Track",
     "align_character",
     "ambiguous_spans",
     "anchor_depths",
+    "background_depth",
+    "background_mesh",
     "carry_masks",
     "commit_edit",
     "compare",

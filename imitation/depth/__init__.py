@@ -1,1 +1,22 @@
-"""Dense background depth: not here yet; contacts take their place from a local ground fit until it is."""
+"""Dense depth of the background, what lies behind the subject, and the background as a mesh (paper A, 3.1)."""
+
+from imitation.depth.checks import Range
+from imitation.depth.completion import Background, Plate
+from imitation.depth.depthmap import DepthMap
+from imitation.depth.projection import projected
+from imitation.depth.solve import DepthSolver, Sketch, background_depth
+from imitation.depth.surface import BackgroundMesh, background_mesh, joined_mesh
+
+__all__ = [
+    "Background",
+    "BackgroundMesh",
+    "DepthMap",
+    "DepthSolver",
+    "Plate",
+    "Range",
+    "Sketch",
+    "background_depth",
+    "background_mesh",
+    "joined_mesh",
+    "projected",
+]

@@ -55,7 +55,12 @@ class Background:
     """
 
     def __init__(
-        self, frames: Sequence[Any], cameras: CameraPath, maps: Sequence[DepthMap], *, masks: Sequence[Any] | None = None
+        self,
+        frames: Sequence[Any],
+        cameras: CameraPath,
+        maps: Sequence[DepthMap],
+        *,
+        masks: Sequence[Any] | None = None,
     ) -> None:
         if not maps:
             raise InputError("A background needs the depth of at least one frame.")
@@ -136,7 +141,8 @@ class Background:
     def _donors(self, frame: int) -> list[int]:
         """Frames to take colours from: all near ones, ever fewer farther away; near ones first."""
         count = len(self.pictures)
-        away, chosen = 1, []
+        away = 1
+        chosen: list[int] = []
         while len(chosen) < DONORS and away < count:
             chosen += [t for t in (frame - away, frame + away) if 0 <= t < count]
             away += 1 + away // 10
@@ -194,9 +200,7 @@ def _voted(
     return np.where(stray | empty, middle, inverse).astype(np.float32)
 
 
-def _seamless(
-    picture: NDArray[np.uint8], filled: NDArray[np.uint8], hole: NDArray[np.bool_]
-) -> NDArray[np.uint8]:
+def _seamless(picture: NDArray[np.uint8], filled: NDArray[np.uint8], hole: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """Blend a fill into the frame along the hole's rim, inside the hole."""
     import cv2
 

@@ -72,7 +72,7 @@ class DepthMap:
         spot = np.asarray(pixel, np.float64)
         height, width = self.depth.shape
         if spot.shape != (2,) or not np.isfinite(spot).all():
-            raise InputError(f"A place in the picture is two finite numbers (x, y), but got {pixel}.")
+            raise InputError(f"A place in the picture is two finite numbers (x, y), but got {spot}.")
         left, top = (int(max(0, np.floor(c - radius))) for c in spot)
         right, bottom = (int(np.ceil(c + radius)) + 1 for c in spot)
         rows, columns = np.mgrid[top : min(bottom, height), left : min(right, width)]

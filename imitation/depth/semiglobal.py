@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-SMALL, LARGE, LEAST = 20, 320, 60  # penalties of a step of one plane, and of a larger one: at no edge, at least
+SMALL, LARGE, LEAST = 14, 320, 60  # penalties of a step of one plane, and of a larger one: at no edge, at least
 SOFTENING = 8.0  # grey levels over which the larger penalty halves
 _FAR = 8000  # no path comes from outside the volume
 

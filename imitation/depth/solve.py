@@ -20,7 +20,7 @@ from imitation.depth.views import choose_views, key_frames
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
-PLANES, PLANES_LARGE = 96, 128
+PLANES, PLANES_LARGE = 144, 160
 LARGE = 700  # pixels on the longest side from which there are more planes
 
 
@@ -67,7 +67,7 @@ class DepthSolver:
         count = planes or (PLANES_LARGE if max(self.pictures.size) > LARGE else PLANES)
         self.planes = np.linspace(1 / self.reach.far, 1 / self.reach.near, count).astype(np.float32)
         self.step = float(self.planes[1] - self.planes[0])
-        self.sigma = 1.0 if max(self.pictures.size) <= LARGE else 2.0
+        self.sigma = 0.7 * max(1.0, max(self.pictures.size) / 480)
 
     def key_frames(self) -> list[int]:
         """Frames whose depth serves all others."""

@@ -33,12 +33,11 @@ class Geometry:
     Attributes
     ----------
     A : float32 (n, 3, 3). b : float32 (n, 3).
-    back_A, back_b : the same from each view to the reference.
+    back_b : b of the way back, from each view to the reference.
     """
 
     A: NDArray[np.float32]
     b: NDArray[np.float32]
-    back_A: NDArray[np.float32]
     back_b: NDArray[np.float32]
 
 
@@ -55,7 +54,7 @@ def geometry(
 
     there = [between(reference, view) for view in views]
     back = [between(view, reference) for view in views]
-    stacks = ([A for A, _ in there], [b for _, b in there], [A for A, _ in back], [b for _, b in back])
+    stacks = ([A for A, _ in there], [b for _, b in there], [b for _, b in back])
     return Geometry(*(np.ascontiguousarray(stack, np.float32) for stack in stacks))
 
 
@@ -99,9 +98,8 @@ def _network(count: int) -> list[tuple[int, int]]:
         k = p
         while k >= 1:
             for j in range(k % p, count - k, 2 * k):
-                for i in range(min(k, count - j - k)):
-                    if (i + j) // (2 * p) == (i + j + k) // (2 * p):
-                        pairs.append((i + j, i + j + k))
+                ends = range(j, j + min(k, count - j - k))
+                pairs += [(i, i + k) for i in ends if i // (2 * p) == (i + k) // (2 * p)]
             k //= 2
         p *= 2
     return pairs

@@ -57,11 +57,8 @@ def choose_views(
     centres = cameras.centres
     offset = (centres - centres[frame]) / middle
     away = np.linalg.norm(offset, axis=1)
-    reach = away <= 2 * BETWEEN[-1]
-    usable = np.array(
-        [v for v in range(len(cameras)) if v != frame and reach[v] and overlap(cameras, frame, v, size, middle) >= OVERLAP],
-        np.int64,
-    )  # fmt: skip
+    near = [v for v in range(len(cameras)) if v != frame and away[v] <= 2 * BETWEEN[-1]]
+    usable = np.array([v for v in near if overlap(cameras, frame, v, size, middle) >= OVERLAP], np.int64)
     if len(usable) < 2:
         order = np.argsort(np.where(np.arange(len(cameras)) == frame, np.inf, away), kind="stable")
         usable = np.sort(order[: min(MOST_VIEWS, len(cameras) - 1)])

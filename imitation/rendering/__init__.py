@@ -5,7 +5,10 @@ from imitation.rendering.ground import Footing, Ground, Plane, footing_at, groun
 from imitation.rendering.layout import label, side_by_side, side_by_side_frames
 from imitation.rendering.light import Look, look_at
 from imitation.rendering.mesh import Renderer, Rendering, render_mesh
+from imitation.rendering.motion_blur import blurred, pose_at
+from imitation.rendering.occlusion import extended_depth, visibility
 from imitation.rendering.side import side_cameras, side_view
+from imitation.rendering.tone import add_grain, background_normals, grain_of, match_look
 
 __all__ = [
     "Footing",
@@ -15,13 +18,20 @@ __all__ = [
     "Plane",
     "Renderer",
     "Rendering",
+    "add_grain",
+    "background_normals",
+    "blurred",
     "composite",
     "draw_points",
+    "extended_depth",
     "footing_at",
+    "grain_of",
     "ground_shadow",
     "label",
     "look_at",
+    "match_look",
     "over_frame",
+    "pose_at",
     "render_mesh",
     "render_sequence",
     "side_by_side",
@@ -29,4 +39,5 @@ __all__ = [
     "side_cameras",
     "side_view",
     "studio",
+    "visibility",
 ]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import attrs
 import numpy as np
@@ -11,9 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from imitation.errors import InputError
 from imitation.geometry.projection import Camera
 from imitation.progress import Progress, silent
-from imitation.rendering.ground import Footing, Ground, Plane, ground_shadow
+from imitation.rendering.ground import Footing, Ground, Lights, Plane, ground_shadow
 from imitation.rendering.light import Look
 from imitation.rendering.mesh import UP, Renderer, Rendering
+from imitation.rendering.motion_blur import blurred
+from imitation.rendering.occlusion import visibility
+from imitation.rendering.tone import add_grain
 
 Picture = NDArray[np.uint8]
 
@@ -33,7 +36,12 @@ class Layer:
 
 
 def composite(
-    frame: Picture, layers: Sequence[Layer], *, background: NDArray[np.floating] | None = None, tolerance: float = 0.0
+    frame: Picture,
+    layers: Sequence[Layer],
+    *,
+    background: NDArray[np.floating] | None = None,
+    tolerance: float = 0.0,
+    soft: bool = False,
 ) -> Picture:
     """Lay characters over a frame; the nearer covers the farther.
 
@@ -43,6 +51,7 @@ def composite(
     layers : in any order.
     background : (h, w) camera z of the background, NaN where unknown; what lies behind it is hidden.
     tolerance : how far behind the background still counts as before it, world units.
+    soft : anti-alias the edges of what hides, see ``visibility``; estimated depth needs it.
     """
     out = frame.astype(np.float32)
     for layer in layers:
@@ -52,6 +61,11 @@ def composite(
             )
         if layer.shadow is not None:
             out *= 1 - layer.shadow[..., None]
+    shown = (
+        []
+        if background is None
+        else [visibility(each.rendering.depth, background, tolerance, soft=soft) for each in layers]
+    )
     # Farthest first, decided pixel by pixel.
     depths = np.stack([layer.rendering.depth for layer in layers]) if layers else np.zeros((0, *frame.shape[:2]))
     for place in np.argsort(-depths, axis=0, kind="stable") if len(layers) > 1 else np.zeros((len(layers), 1, 1), int):
@@ -59,8 +73,7 @@ def composite(
             alpha = layer.rendering.rgba[..., 3:].astype(np.float32) / 255
             alpha = np.where((place == index)[..., None], alpha, 0)
             if background is not None:
-                with np.errstate(invalid="ignore"):
-                    alpha = np.where((layer.rendering.depth > background + tolerance)[..., None], 0, alpha)
+                alpha = alpha * shown[index][..., None]
             out += alpha * (layer.rendering.rgba[..., :3] - out)
     done: Picture = np.clip(np.rint(out), 0, 255).astype(np.uint8)
     return done
@@ -80,6 +93,8 @@ def render_sequence(
     look: Look | None = None,
     samples: int = 3,
     up: ArrayLike = UP,
+    shutter: float = 0.0,
+    grain: float = 0.0,
     progress: Progress | None = None,
 ) -> Iterator[Picture]:
     """Draw a moving character over the frames of a film, one picture after the other.
@@ -95,6 +110,8 @@ def render_sequence(
     background : n depth maps (h, w) that hide what is behind them.
     tracks : name to (n, 2) tracked points to draw, pixels.
     dim : how far the background fades towards grey, 0 to 1.
+    shutter : share of the frame time that the shutter is open: blurs what the character itself does.
+    grain : noise over the character, grey levels; see ``grain_of``.
     """
     report = progress or silent
     count = len(vertices)
@@ -116,6 +133,10 @@ def render_sequence(
             yield over_frame(
                 renderer, pose, camera, back, floor, None if background is None else background[t],
                 None if tracks is None else [track[t] for track in tracks.values()],
+                drawn=lambda lights, t=t, camera=camera: blurred(  # type: ignore[misc]
+                    renderer, vertices, t, camera, lights, shutter=shutter  # type: ignore[arg-type]
+                ),
+                grain=grain, seed=t,
             )  # fmt: skip
             report((t + 1) / count)
 
@@ -128,15 +149,24 @@ def over_frame(
     ground: Ground | None = None,
     background: NDArray[np.floating] | None = None,
     points: Sequence[NDArray[np.float64]] | None = None,
+    *,
+    drawn: Callable[[Lights], Rendering] | None = None,
+    grain: float = 0.0,
+    seed: int = 0,
 ) -> Picture:
-    """Draw one pose over one frame."""
+    """Draw one pose over one frame; ``drawn`` draws the character otherwise than sharply (motion blur)."""
     lights = renderer.lights(vertices, camera)
-    rendering = renderer.draw(vertices, camera, lights)
+    rendering = renderer.draw(vertices, camera, lights) if drawn is None else drawn(lights)
     shadow = None
     if ground is not None:
         shadow = ground_shadow(vertices, lights, camera, renderer.size, ground, renderer.look, renderer.up)
     tolerance = 0.05 * lights[0].radius
-    out = composite(frame, [Layer(rendering, shadow)], background=background, tolerance=tolerance)
+    out = composite(frame, [Layer(rendering, shadow)], background=background, tolerance=tolerance, soft=True)
+    if grain > 0:
+        alpha = rendering.rgba[..., 3].astype(np.float32) / 255
+        if background is not None:
+            alpha = alpha * visibility(rendering.depth, background, tolerance)
+        out = add_grain(out, alpha, grain, seed)
     return out if points is None else draw_points(out, points)
 
 
