@@ -17,7 +17,8 @@ from app.actions.session import Session
 from app.window import fonts, icons, settings, theme
 from app.window.viewport.hosts import Choice
 
-SLOW = ("scipy.sparse.linalg", "cv2", "pyvista", "numba")
+SLOW = ("app.window.viewport.scene", "scipy.sparse.linalg", "cv2", "numba", "imitation.deformation.deformer")
+"""What the first 3D picture needs comes first, then what the first drag needs."""
 messages: list[str] = []
 
 

@@ -25,6 +25,7 @@ class FrameLoader(QObject):
     """
 
     loaded = Signal(int, object)
+    _arrived = Signal(int, object, int)
     also_ready = Signal(int)
     thumbnail_ready = Signal(int)
     failed = Signal(str)
@@ -34,6 +35,7 @@ class FrameLoader(QObject):
         self._open, self._count = open_source, count
         self._wake = threading.Condition()
         self._wanted: int | None = None
+        self._wish = self._shown = 0
         self._centre, self._direction = 0, 1
         self._closing = False
         self._kept: OrderedDict[int, QImage] = OrderedDict()
@@ -42,6 +44,7 @@ class FrameLoader(QObject):
         self._thumbnail_wishes: list[int] = []
         self._also: list[int] = []
         self.decoded = 0
+        self._arrived.connect(self._deliver)
         self._thread = threading.Thread(target=self._serve, name="frames", daemon=True)
         self._thread.start()
 
@@ -50,12 +53,20 @@ class FrameLoader(QObject):
         with self._wake:
             self._direction = 1 if frame >= self._centre else -1
             self._centre = frame
+            self._wish += 1
             picture = self._kept.get(frame)
             if picture is not None:
                 self._kept.move_to_end(frame)
+                self._shown = self._wish
             self._wanted = frame if picture is None else None
             self._wake.notify()
         return picture
+
+    def _deliver(self, frame: int, picture: QImage, wish: int) -> None:
+        """Hand a picture out, unless one of a later wish is shown already."""
+        if wish >= self._shown and not self._closing:
+            self._shown = wish
+            self.loaded.emit(frame, picture)
 
     def peek(self, frame: int) -> QImage | None:
         """Give the frame's picture if it is there, and ask for nothing."""
@@ -110,24 +121,23 @@ class FrameLoader(QObject):
                 job = self._next_job()
                 if job is None:
                     return
-                kind, frame = job
-                self._load(source, kind, frame)
+                self._load(source, *job)
         finally:
             source.close()
 
-    def _next_job(self) -> tuple[str, int] | None:
+    def _next_job(self) -> tuple[str, int, int] | None:
         with self._wake:
             while not self._closing:
                 if self._wanted is not None:
                     frame, self._wanted = self._wanted, None
-                    return "wanted", frame
+                    return "wanted", frame, self._wish
                 if self._also:
-                    return "also", self._also.pop(0)
+                    return "also", self._also.pop(0), 0
                 near = self._to_prefetch()
                 if near is not None:
-                    return "near", near
+                    return "near", near, 0
                 if self._thumbnail_wishes:
-                    return "thumbnail", self._thumbnail_wishes.pop(0)
+                    return "thumbnail", self._thumbnail_wishes.pop(0), 0
                 self._wake.wait()
         return None
 
@@ -139,7 +149,7 @@ class FrameLoader(QObject):
                 return frame
         return None
 
-    def _load(self, source: Any, kind: str, frame: int) -> None:
+    def _load(self, source: Any, kind: str, frame: int, wish: int) -> None:
         picture = self.peek(frame)
         if picture is None:
             try:
@@ -159,7 +169,7 @@ class FrameLoader(QObject):
                 return
         self._keep(frame, picture)
         if kind == "wanted":
-            self._say(self.loaded, frame, picture)
+            self._say(self._arrived, frame, picture, wish)
         elif kind == "also":
             self._say(self.also_ready, frame)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections.abc import Callable
 
@@ -32,6 +33,21 @@ def posed(open_shell: Callable[[Session], Shell], session: Session) -> Shell:
     wait_for(lambda: shell.character.frame == 10)
     settle()
     return shell
+
+
+def test_the_3d_libraries_load_behind_the_window(
+    open_shell: Callable[[Session], Shell], session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The workspace comes into sight at once and says that it loads; the window lives on until the view is there."""
+    monkeypatch.setattr("app.window.character.mesh_view.LIBRARIES", "tests.window.late_library")
+    monkeypatch.delitem(sys.modules, "tests.window.late_library", raising=False)
+    shell = open_shell(session)
+    QTest.keyClick(shell, Qt.Key.Key_F2)
+    wait_for(lambda: shell.character.isVisible())
+    assert shell.character.mesh.viewport is None, "the window waited for the library"
+    assert shell.character.mesh.waiting.isVisible()
+    wait_for(lambda: shell.character.mesh.viewport is not None and len(view(shell).vertices))
+    assert not shell.character.mesh.waiting.isVisible()
 
 
 def view(shell: Shell) -> Viewport:

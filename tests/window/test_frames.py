@@ -72,6 +72,22 @@ def test_the_right_picture_comes(loader: FrameLoader) -> None:
     assert all(frame == shown for frame, shown in got)
 
 
+def test_a_late_picture_never_replaces_a_newer_one(loader: FrameLoader, clip: Clip) -> None:
+    """A picture that was decoded for an older wish and is still on its way when a kept one is shown is dropped."""
+    wait_for(lambda: loader.request(3) is not None)
+    got: list[int] = []
+    loader.loaded.connect(lambda frame, picture: got.append(frame))
+    assert loader.request(40) is None
+    end = time.monotonic() + 5
+    while loader.peek(40) is None and time.monotonic() < end:
+        time.sleep(0.002)  # the answer waits in the queue: no event is handled meanwhile
+    time.sleep(0.02)
+    assert loader.request(3) is not None
+    settle()
+    assert got == [], "frame 3 is shown, so frame 40 comes too late"
+    assert loader.request(40) is not None
+
+
 def test_only_the_newest_wish_is_served(loader: FrameLoader, clip: Clip) -> None:
     """While one frame is decoded, of ten wishes only the last is served."""
     got: list[int] = []

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import sys
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -10,13 +12,17 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QButtonGroup, QSlider, QVBoxLayout, QWidget
 
+from app.window.background_call import BackgroundCalls
 from app.window.controls import ErrorBar, Panel, icon_button, label, toggle
 from app.window.picture_notes import PictureNotes
 from app.window.viewport import Handle, Viewport
 from app.window.viewport.hosts import Choice
 from app.window.viewport.lens import Lens
+from app.window.work import details
 from imitation.geometry import Camera
 
+LIBRARIES = "app.window.viewport.scene"
+"""The module whose loading loads the 3D libraries."""
 LOOKS = (
     ("orbit", "Orbit", "orbit", "3"),
     ("camera", "Camera", "camera", "1"),
@@ -29,11 +35,14 @@ class MeshView(Panel):
 
     happened = Signal(object)
     made = Signal()
+    loaded = Signal()
 
     def __init__(self, choice: Choice) -> None:
         super().__init__("Character", " ")
         self.choice = choice
         self.viewport: Viewport | None = None
+        self._calls = BackgroundCalls(self)
+        self._loading = False
         self.ghosts: Callable[[], Sequence[tuple[int, NDArray[np.float64]]]] = tuple
         self._mesh: tuple[int, int] = (0, 0)
         self._ground: tuple[float, ...] = ()
@@ -73,6 +82,20 @@ class MeshView(Panel):
         self.column.addWidget(self.place, 1)
         self.notes: PictureNotes | None = None
         self.look_buttons["orbit"].setChecked(True)
+
+    def ready(self) -> bool:
+        """Whether the viewport can be made at once; else the 3D libraries are loaded, and ``loaded`` says when."""
+        if self.viewport is not None or LIBRARIES in sys.modules:
+            return True
+        if not self._loading:
+            self._loading = True
+            self._calls.run(lambda: importlib.import_module(LIBRARIES), lambda _: self.loaded.emit(), self._not_loaded)
+        return False
+
+    def _not_loaded(self, error: BaseException) -> None:
+        self._loading = False
+        self.waiting.setText("The 3D view cannot be loaded.")
+        self.errors.tell(f"The 3D view cannot be loaded: {error}", details(error))
 
     def make(self) -> Viewport:
         """Give the viewport, made now where there is none yet."""
@@ -171,5 +194,6 @@ class MeshView(Panel):
 
     def finish(self) -> None:
         """Close the render window."""
+        self._calls.close()
         if self.viewport is not None:
             self.viewport.finish()

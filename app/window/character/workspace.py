@@ -49,6 +49,7 @@ class CharacterWorkspace(QWidget):
         self.mesh = MeshView(choice)
         self.mesh.ghosts = self._ghosts
         self.mesh.happened.connect(self._happened)
+        self.mesh.loaded.connect(self.refresh)
         self.tracks.pairing.connect(lambda _: self._say())
         self.inspector = CharacterInspector()
         side = Panel()
@@ -170,7 +171,7 @@ class CharacterWorkspace(QWidget):
             self.mesh.header.caption.setText("Choose a character mesh: Project menu, Add a character.")
             return
         shape = self.source.shape(character)
-        if shape is None:
+        if not self.mesh.ready() or shape is None:
             return
         if vertices is None:
             vertices = shape.standing
