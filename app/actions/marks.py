@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,8 +13,10 @@ from app.actions.session import Session
 from app.model.character import Character
 from app.model.document import Document
 from app.model.edits import characters, contacts, scene, tracks
+from app.model.edits.edit import checked_place
 from app.model.tracks import Track
-from app.model.world import KnownLength
+from app.model.values import Point2
+from app.model.world import KnownLength, SeenLength
 from imitation.errors import InputError
 
 
@@ -84,22 +87,63 @@ def apply_values(session: Session, body: Mapping[str, Any], folder: Path, *, cop
     for name, marks in body.get("tracks", {}).items():
         if marks.get("mirror"):
             track, other = track_named(session.document, name), track_named(session.document, marks["mirror"])
-            session.apply(tracks.set_mirror(session.document, track.id, other.id))
+            edit = tracks.set_mirror(session.document, track.id, other.id, lag=marks.get("mirror_lag"))
+            session.apply(edit)
     camera = body.get("camera", {})
     if "focal" in camera:
         session.apply(scene.set_camera(session.document, "solve", focal=camera["focal"]))
-    world = body.get("world", {})
-    if "ground" in world:
-        depth_of = track_named(session.document, world["depth_of"]).id if "depth_of" in world else None
-        session.apply(
-            scene.set_ground(session.document, world["ground"], depth_track=depth_of, depth=world.get("depth"))
-        )
-    if "length" in world:
-        length = world["length"]
-        known = KnownLength(tuple(length["first"]), tuple(length["second"]), float(length["metres"]))
-        session.apply(scene.set_length(session.document, known))
+    _apply_world(session, body.get("world", {}))
     for name, marks in body.get("characters", {}).items():
         _apply_character(session, name, marks, folder, copy)
+
+
+def _apply_world(session: Session, world: Mapping[str, Any]) -> None:
+    if "ground" in world:
+        named = world.get("depth_of", [])
+        held = [track_named(session.document, name).id for name in ([named] if isinstance(named, str) else named)]
+        edit = scene.set_ground(session.document, world["ground"], depth_tracks=held, depth=world.get("depth"))
+        session.apply(edit)
+    if "from_above" in world:
+        session.apply(scene.set_from_above(session.document, bool(world["from_above"])))
+    if "pitch" in world or "roll" in world:
+        session.apply(scene.set_horizon(session.document, world.get("pitch"), float(world.get("roll", 0.0))))
+    if "height" in world:
+        session.apply(scene.set_camera_height(session.document, float(world["height"])))
+    if "length" in world:
+        length = world["length"]
+        metres = float(length["metres"])
+        if "tracks" in length:
+            one, other = length["tracks"]
+            length_between(session, one, other, int(length["frame"]), metres)
+        elif "pixels" in length:
+            (ax, ay), (bx, by) = length["pixels"]
+            seen = SeenLength(int(length["frame"]), (float(ax), float(ay)), (float(bx), float(by)), metres)
+            session.apply(scene.set_length(session.document, seen))
+        else:
+            first, second = (checked_place(length[end]) for end in ("first", "second"))
+            session.apply(scene.set_length(session.document, KnownLength(first, second, metres)))
+
+
+def length_between(session: Session, first: str, second: str, frame: int, metres: float) -> None:
+    """Say how far two tracked points are from each other in a frame.
+
+    Raises ``InputError`` when a track is neither clicked in that frame nor computed there.
+    """
+    chosen = [track_named(session.document, name) for name in (first, second)]
+    ends = [_seen_at(session, track, frame) for track in chosen]
+    length = SeenLength(frame, ends[0], ends[1], metres, tuple(track.id for track in chosen))
+    session.apply(scene.set_length(session.document, length))
+
+
+def _seen_at(session: Session, track: Track, frame: int) -> Point2:
+    """Where a track is in a frame: at its click, or where it was followed to."""
+    if frame in track.clicks:
+        return track.clicks[frame]
+    found: Any = session.result(session.stages.track(track.id))
+    if not 0 <= frame < len(found.positions) or not math.isfinite(found.positions[frame].sum()):
+        raise InputError(f"{track.name} is not in the picture in frame {frame}: choose a frame that shows it.")
+    x, y = found.positions[frame]
+    return float(x), float(y)
 
 
 def _apply_track(session: Session, name: str, marks: Mapping[str, Any]) -> None:

@@ -34,7 +34,9 @@ def fill_with_sample(session: Session, *, copy: bool = False) -> None:
 
 def _marks(made: dict[str, Any]) -> dict[str, Any]:
     """Turn what the maker of the sample wrote into the form of a file of marks (docs/formats.md)."""
+    first, second, metres = made["length"]
     return {
+        "world": {"length": {"frame": 0, "pixels": [first, second], "metres": metres}},
         "lassos": {frame: [outline] for frame, outline in made["lassos"].items()},
         "tracks": {
             name: {"clicks": clicks, "contacts": made["contacts"].get(name, [])}

@@ -12,7 +12,8 @@ from app.actions import bringing, marks, masking
 from app.actions.overview import overview
 from app.actions.session import Session
 from app.commands.console import Console
-from app.model.edits import contacts, scene
+from app.commands.world_options import set_lengths, set_world, world_options
+from app.model.edits import characters, contacts, scene, tracks
 from imitation.errors import InputError
 
 PATH = click.Path(path_type=Path)
@@ -62,10 +63,7 @@ def new(
 @click.option("--focal", type=float, help="Focal length, pixels.")
 @click.option("--static", is_flag=True, help="The camera stands still.")
 @click.option("--camera-file", type=PATH, help="Read cameras: a COLMAP model folder or transforms.json.")
-@click.option("--ground", type=click.Choice(["local", "plane", "depth"]), help="Where contacts lie.")
-@click.option("--from-above", is_flag=True, help="The camera looks down on the subject.")
-@click.option("--depth-of", help="Track kept at constant depth, with --ground depth.")
-@click.option("--depth", type=float, help="That depth, metres.")
+@world_options
 @click.option(
     "--click", "clicks", nargs=4, type=(str, int, float, float), multiple=True, help="NAME FRAME X Y: click a point."
 )
@@ -73,6 +71,15 @@ def new(
     "--contact", "marked", nargs=3, type=(str, int, int), multiple=True, help="NAME FIRST LAST: mark a contact."
 )
 @click.option("--pair", "pairs", nargs=3, type=(str, str, int), multiple=True, help="CHARACTER NAME VERTEX: pair.")
+@click.option(
+    "--mirror",
+    "mirrors",
+    nargs=3,
+    type=(str, str, str),
+    multiple=True,
+    help="NAME OTHER LAG: two points on both sides of the body; where one is hidden it moves as the other does, LAG "
+    "frames later (half a stride), or 'auto' to find that from the tracks.",
+)
 @click.option("--name", help="Name of the project.")
 @click.option("--copy", is_flag=True, help="Copy media into the project instead of linking them.")
 @click.pass_obj
@@ -84,13 +91,7 @@ def set_(console: Console, project: Path, **options: Any) -> None:
         if options["static"] or options["focal"] is not None:
             source = "static" if options["static"] else "solve"
             session.apply(scene.set_camera(session.document, source, focal=options["focal"]))
-        if options["ground"] is not None:
-            depth_of = marks.track_named(session.document, options["depth_of"]).id if options["depth_of"] else None
-            session.apply(
-                scene.set_ground(session.document, options["ground"], depth_track=depth_of, depth=options["depth"])
-            )
-        if options["from_above"]:
-            session.apply(scene.set_from_above(session.document, True))
+        set_world(session, options)
         for name, frame, x, y in options["clicks"]:
             marks.click_named(session, name, frame, (x, y))
         for name, first, last in options["marked"]:
@@ -99,11 +100,26 @@ def set_(console: Console, project: Path, **options: Any) -> None:
             )
         for character, name, vertex in options["pairs"]:
             marks.pair_named(session, character, name, vertex)
+        for name, other, lag in options["mirrors"]:
+            _mirror(session, name, other, lag)
+        set_lengths(session, options)
         if options["name"]:
             session.apply(scene.rename(session.document, options["name"]))
         session.save()
         done = [version.label for version in session.history.versions[before + 1 : session.history.present + 1]]
         console.answer({"done": done}, done or ["Nothing was changed."])
+
+
+def _mirror(session: Session, name: str, other: str, lag: str) -> None:
+    """Make two tracks mirrors of each other, and let the characters that they move use it."""
+    document = session.document
+    first, second = marks.track_named(document, name), marks.track_named(document, other)
+    if lag != "auto" and not lag.lstrip("+-").isdigit():
+        raise InputError(f"The lag between {name} and {other} is a number of frames or auto, not {lag}.")
+    session.apply(tracks.set_mirror(document, first.id, second.id, lag=None if lag == "auto" else int(lag)))
+    for character in session.document.characters:
+        if {first.id, second.id} <= set(character.pairs) and not character.solve.symmetry:
+            session.apply(characters.set_solve(session.document, character.id, symmetry=True))
 
 
 def _set_media(session: Session, options: dict[str, Any]) -> None:

@@ -42,6 +42,7 @@ class Track:
     occluded : frames in which the user says that the point is hidden.
     contacts : planted intervals, in order, not overlapping.
     mirror : id of the track on the other side of the body, whose motion a hidden limb follows.
+    mirror_lag : frames by which this point moves later than its mirror; None finds it from both tracks.
     colour : index into the cycle of track colours.
     visible : whether the window draws it.
     """
@@ -56,6 +57,7 @@ class Track:
     occluded: tuple[Interval, ...] = ()
     contacts: tuple[Contact, ...] = ()
     mirror: str | None = None
+    mirror_lag: int | None = None
     visible: bool = True
     unknown: Unknown = attrs.field(factory=FrozenMap, repr=False)
 

@@ -12,12 +12,14 @@ from app.model.values import Clip
 from app.model.world import CameraChoice, WorldChoice
 from app.stages import tracking
 from app.stages.context import Context
+from app.stages.once import once
 from app.stages.results import Masks, PlacedContact, World
 from app.stages.stage import Stage
 from imitation import CameraPath
 from imitation.errors import InputError
 
 
+@once
 def cameras(document: Document) -> Stage:
     """The camera path in its own units."""
     clip, choice = document.clip, document.camera
@@ -28,12 +30,15 @@ def cameras(document: Document) -> Stage:
     return Stage("cameras", "Solving the cameras", _cameras, (clip, choice), needs, weight=seconds)
 
 
+@once
 def world(document: Document) -> Stage:
     """The camera path with Z up and in metres, as far as they are known."""
-    needs = (cameras(document),)
-    return Stage("world", "Finding the ground", _world, (document.world,), needs, weight=0.2)
+    seen = document.world.seen
+    marked = tuple(tracking.track(document, document.track(each)) for each in seen.tracks) if seen is not None else ()
+    return Stage("world", "Finding the ground", _world, (document.world,), (cameras(document), *marked), weight=0.2)
 
 
+@once
 def placed(document: Document) -> Stage:
     """The contacts of all tracks with their places, in the world: a weakly supported one is judged by the others."""
     marked = [track for track in document.tracks if track.contacts or _anchored(document, track)]
@@ -45,6 +50,7 @@ def placed(document: Document) -> Stage:
     return Stage("contacts", "Placing contacts", _placed, inputs, needs, version=3, weight=0.2)
 
 
+@once
 def contacts(document: Document, track: Track) -> Stage:
     """The contacts of a track with their places, in the world."""
     label = f"Placing contacts of {track.name}"
@@ -53,7 +59,7 @@ def contacts(document: Document, track: Track) -> Stage:
 
 
 def _anchored(document: Document, track: Track) -> bool:
-    return document.world.ground == "depth" and document.world.depth_track == track.id
+    return document.world.ground == "depth" and track.id in document.world.depth_tracks
 
 
 def _cameras(context: Context, inputs: tuple[Clip, CameraChoice], masks: Masks | None = None) -> CameraPath:
@@ -88,11 +94,11 @@ def _static(clip: Clip, focal: float | None) -> CameraPath:
     )
 
 
-def _world(context: Context, inputs: tuple[WorldChoice], path: CameraPath) -> World:
+def _world(context: Context, inputs: tuple[WorldChoice], path: CameraPath, *marked: Any) -> World:
     from app.stages.worldframe import make_world
 
     (choice,) = inputs
-    return make_world(choice, path)
+    return make_world(choice, path, marked)
 
 
 def _placed(context: Context, inputs: Any, world_: World, *tracks: Any) -> dict[str, list[PlacedContact]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import attrs
@@ -10,20 +10,23 @@ import numpy as np
 
 from app.model.tracks import Contact
 from app.model.world import WorldChoice
+from app.stages.assumed import ASSUMED_DEPTH, assumed_ground, held_up, known_length
+from app.stages.assumed import assumes as _assumes
+from app.stages.assumed import held as _held
 from app.stages.results import Array, PlacedContact, World
 from imitation import CameraPath
 from imitation.errors import InputError, NoSolution
 
-ASSUMED_DEPTH = 5.0
-ASSUMED_HEIGHT = 1.6
 FIRM = 0.5
 """A local ground that fewer of the points nearby speak for is not believed against the other contacts."""
 APART = 0.08
 """How far, of its depth, a foot may be from the others before it is taken for misplaced."""
 
 
-def make_world(choice: WorldChoice, path: CameraPath) -> World:
+def make_world(choice: WorldChoice, path: CameraPath, marked: Sequence[Any] = ()) -> World:
     """Level the world on its ground, put the ground at height 0, scale it by a known length.
+
+    ``marked`` are the two tracks of a length that is seen between tracks.
 
     Raises ``InputError`` when the user's choice does not fit the cameras.
     """
@@ -32,19 +35,21 @@ def make_world(choice: WorldChoice, path: CameraPath) -> World:
     from imitation.cameras import world_from_ground
 
     plane, found = _plane(choice, path)
-    length = None
-    if choice.length is not None:
-        length = (choice.length.first, choice.length.second, choice.length.metres)
+    known = known_length(choice, path, plane, marked)
+    length = None if known is None else known[:3]
     depth = None
     if plane is not None:
-        scale, rotation, translation = world_from_ground(plane, path, length=length)
+        recovered = None if length is not None or _assumes(choice, path) else choice.height
+        scale, rotation, translation = world_from_ground(plane, path, length=length, camera_height=recovered)
     else:
         scale = 1.0 if length is None else length[2] / float(np.linalg.norm(np.subtract(length[1], length[0])))
-        rotation, translation = (_looking_down(path) if choice.from_above else np.eye(3)), np.zeros(3)
-        depth = choice.depth or ASSUMED_DEPTH
+        rotation, translation = _without_ground(choice, path), np.zeros(3)
+        depth = choice.depth or ASSUMED_DEPTH * scale
     cameras = path.transformed(scale, rotation, translation)
     normal = np.array([0.0, 0.0, 1.0])
-    notes = [found, "in metres" if length else "the scale is unknown", path.reason]
+    metric = length is not None or (plane is not None and choice.height is not None)
+    by = "the camera's height" if known is None else f"a length {known[3]}"
+    notes = [found, f"in metres by {by}" if metric else "the scale is unknown", path.reason]
     return World(
         cameras,
         scale,
@@ -52,8 +57,8 @@ def make_world(choice: WorldChoice, path: CameraPath) -> World:
         translation,
         normal,
         0.0,
-        metric=length is not None,
-        levelled=plane is not None or choice.from_above or path.verdict in ("ok", "planar", "rotation"),
+        metric=metric,
+        levelled=plane is not None or choice.from_above or _held(choice) or path.verdict != "static",
         grounded=plane is not None,
         depth=depth,
         note="; ".join(note for note in notes if note),
@@ -163,14 +168,9 @@ def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
     if choice.ground == "plane" and choice.plane_points:
         ground = plane_ground(choice.plane_points)
         return ground.plane, ground.name
+    if _assumes(choice, path):
+        return assumed_ground(choice, path)
     if len(path.points) < 3:
-        if choice.ground == "plane" and path.verdict in ("rotation", "static") and not choice.from_above:
-            # Without parallax any height fits the pictures: it sets the scale; a level ground gives feet depth.
-            from imitation.cameras import Plane
-
-            height = float(path.centres[:, 2].mean()) - ASSUMED_HEIGHT
-            plane = Plane(np.array([0.0, 0.0, 1.0]), height)
-            return plane, f"a level ground {ASSUMED_HEIGHT:g} m under a level camera is assumed"
         if choice.ground == "plane":
             raise InputError("There are no recovered points to lay a plane through: assume a constant depth instead.")
         return None, "no ground is known, a constant depth is assumed"
@@ -198,7 +198,14 @@ def ground_under(choice: WorldChoice, world: World, frame: int, pixel: Array) ->
         return attrs.evolve(plane, name=f"the ground plane, for {str(reason)[0].lower()}{str(reason)[1:].rstrip('.')}")
 
 
-def _looking_down(path: CameraPath) -> Array:
-    """The rotation that makes the direction towards the first camera the world's up, picture up the world's +Y."""
-    right, down, forward = path.R[0]
-    return np.stack([right, -down, -forward])
+def _without_ground(choice: WorldChoice, path: CameraPath) -> Array:
+    """The rotation to Z up where no ground is known: as the user says that the camera is held."""
+    if choice.from_above:
+        # The direction towards the first camera is up, picture up the world's +Y.
+        right, down, forward = path.R[0]
+        return np.stack([right, -down, -forward])
+    if _held(choice):
+        from imitation.cameras.world import rotation_to_z
+
+        return rotation_to_z(held_up(choice, path))
+    return np.eye(3)

@@ -5,10 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-VERSION = 1
+VERSION = 2
 """The version that this program writes."""
 
-STEPS: dict[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
+
+def _several_depth_tracks(body: dict[str, Any]) -> dict[str, Any]:
+    """Version 1 kept one track at a constant depth, version 2 several."""
+    document = body.get("document")
+    if not isinstance(document, dict):
+        return body
+    world = document.get("world")
+    if not isinstance(world, dict) or "depth_track" not in world:
+        return body
+    one = world["depth_track"]
+    kept = {key: value for key, value in world.items() if key != "depth_track"}
+    kept["depth_tracks"] = [] if one is None else [one]
+    return {**body, "document": {**document, "world": kept}}
+
+
+STEPS: dict[int, Callable[[dict[str, Any]], dict[str, Any]]] = {1: _several_depth_tracks}
 """Version -> function that turns a file of it into one of the next version."""
 
 

@@ -128,6 +128,10 @@ class StillPoint:
             return np.inf
         return self.off(first, last, self._fit(frames))
 
+    def place(self, first: int, last: int) -> Array:
+        """The still point (3,), world, that frames first..last see; all of them must."""
+        return self._fit(slice(first, last + 1))
+
     def off(self, first: int, last: int, point: Array) -> float:
         """Largest distance, pixels, of the track from a point's picture in frames first..last."""
         frames = slice(first, last + 1)

@@ -10,6 +10,7 @@ from app.model.document import Document
 from app.model.edits import Edit, characters, contacts, performance, poses, scene, sequences, tracks
 from app.model.performance import Motion
 from app.model.values import Clip, MediaRef, ModelError
+from app.model.world import SeenLength
 
 CLIP = Clip(MediaRef("media/clip.mp4", "c0ffee", linked=False), 320, 180, 30, 25.0)
 EditMaker = Callable[[Document], Edit]
@@ -75,7 +76,10 @@ def edit_makers(draw: st.DrawFn) -> EditMaker:
         lambda d: scene.remove_mask(d, frame),
         lambda d: scene.set_range(d, frame, other),
         lambda d: scene.set_camera(d, "static" if flag else "solve", focal=100.0 + number),
-        lambda d: scene.set_ground(d, "depth" if flag else "plane", depth_track=track(d) if flag else None),
+        lambda d: scene.set_ground(d, "depth" if flag else "plane", depth_tracks=[track(d)] if flag else []),
+        lambda d: scene.set_horizon(d, number if flag else None, number / 2),
+        lambda d: scene.set_camera_height(d, 1.0 + abs(number) if flag else None),
+        lambda d: scene.set_length(d, SeenLength(frame, pixel, (0.0, 0.0), 2.0, (track(d), track(d)) if flag else ())),
         lambda d: scene.rename(d, f"film {number}"),
         lambda d: characters.add_character(d, mesh, name="cat"),
         lambda d: characters.delete_character(d, character(d)),

@@ -8,10 +8,10 @@ from collections.abc import Iterable
 import attrs
 
 from app.model.document import Document
-from app.model.edits.edit import Edit, checked_frame, checked_interval, checked_name, checked_place
+from app.model.edits.edit import Edit, checked_frame, checked_interval, checked_name, checked_pixel, checked_place
 from app.model.frozen import FrozenMap
 from app.model.values import Clip, KeyMask, Lasso, MediaRef, ModelError, Point2
-from app.model.world import CameraChoice, CameraSource, GroundKind, KnownLength
+from app.model.world import CameraChoice, CameraSource, GroundKind, KnownLength, SeenLength
 
 
 def set_clip(document: Document, clip: Clip) -> Edit:
@@ -105,10 +105,10 @@ def set_ground(
     kind: GroundKind,
     *,
     plane_points: Iterable[Iterable[float]] = (),
-    depth_track: str | None = None,
+    depth_tracks: Iterable[str] = (),
     depth: float | None = None,
 ) -> Edit:
-    """Choose where contacts lie: local fit, plane through selected points, or a track of constant depth."""
+    """Choose where contacts lie: local fit, plane through selected points, or tracks of constant depth."""
     if kind not in ("local", "plane", "depth"):
         raise ModelError(f"The ground is local, plane or depth, not {kind!r}.")
     points = tuple(checked_place(point) for point in plane_points)
@@ -116,13 +116,14 @@ def set_ground(
         raise ModelError(f"A plane needs at least 3 selected points, but got {len(points)}: select more.")
     if depth is not None and not (math.isfinite(depth) and depth > 0):
         raise ModelError(f"A depth must be a positive number, not {depth}.")
-    if kind == "depth" and depth_track is not None:
-        document.track(depth_track)
-    world = attrs.evolve(document.world, ground=kind, plane_points=points, depth_track=depth_track, depth=depth)
+    held = tuple(dict.fromkeys(depth_tracks))
+    for track_id in held:
+        document.track(track_id)
+    world = attrs.evolve(document.world, ground=kind, plane_points=points, depth_tracks=held, depth=depth)
     words = {
         "local": "Fit the ground near each contact",
         "plane": "Use one ground plane",
-        "depth": "Keep one point at constant depth",
+        "depth": "Keep points at constant depth",
     }
     return Edit(attrs.evolve(document, world=world), words[kind])
 
@@ -133,17 +134,51 @@ def set_from_above(document: Document, from_above: bool) -> Edit:
     return Edit(attrs.evolve(document, world=attrs.evolve(document.world, from_above=from_above)), label)
 
 
-def set_length(document: Document, length: KnownLength | None) -> Edit:
-    """Say how long the distance between two places is, or forget it."""
-    if length is not None:
+def set_horizon(document: Document, pitch: float | None, roll: float = 0.0) -> Edit:
+    """Say how the camera is held in frame 0, degrees: downwards from the horizon, clockwise; None takes it as level."""
+    for angle, name in ((pitch, "pitch"), (roll, "roll")):
+        if angle is not None and not (math.isfinite(angle) and abs(angle) < 90):
+            raise ModelError(f"The {name} must lie between -90 and 90 degrees, but is {angle}.")
+    label = "Take the camera as level" if pitch is None and not roll else f"Tilt the camera by {pitch or 0:g} degrees"
+    world = attrs.evolve(document.world, pitch=None if pitch is None else float(pitch), roll=float(roll))
+    return Edit(attrs.evolve(document, world=world), label, 0)
+
+
+def set_camera_height(document: Document, metres: float | None) -> Edit:
+    """Say how high the first camera is above the ground, or forget it; it takes the place of another known length."""
+    if metres is not None and not (math.isfinite(metres) and metres > 0):
+        raise ModelError(f"The camera's height must be a positive number of metres, not {metres}.")
+    label = "Forget the camera's height" if metres is None else f"Put the camera at {metres:g} m"
+    world = attrs.evolve(document.world, height=None if metres is None else float(metres))
+    if metres is not None:
+        world = attrs.evolve(world, length=None, seen=None)
+    return Edit(attrs.evolve(document, world=world), label, 0)
+
+
+def set_length(document: Document, length: KnownLength | SeenLength | None) -> Edit:
+    """Say how long the distance between two places is, or forget it; there is one known length at a time."""
+    if length is None:
+        world = attrs.evolve(document.world, length=None, seen=None)
+        return Edit(attrs.evolve(document, world=world), "Forget the known length")
+    if not (math.isfinite(length.metres) and length.metres > 0):
+        raise ModelError(f"A known length must be a positive number of metres, not {length.metres}.")
+    if math.dist(length.first, length.second) == 0:
+        raise ModelError("The two ends of a known length are the same place: choose two different points.")
+    label = f"Set a length of {length.metres:g} m"
+    if isinstance(length, KnownLength):
         checked_place(length.first)
         checked_place(length.second)
-        if not (math.isfinite(length.metres) and length.metres > 0):
-            raise ModelError(f"A known length must be a positive number of metres, not {length.metres}.")
-        if math.dist(length.first, length.second) == 0:
-            raise ModelError("The two ends of a known length are the same place: choose two different points.")
-    label = "Forget the known length" if length is None else f"Set a length of {length.metres:g} m"
-    return Edit(attrs.evolve(document, world=attrs.evolve(document.world, length=length)), label)
+        world = attrs.evolve(document.world, length=length, seen=None, height=None)
+        return Edit(attrs.evolve(document, world=world), label)
+    frame = checked_frame(document, length.frame)
+    for point in (length.first, length.second):
+        checked_pixel(document, point)
+    if len(length.tracks) not in (0, 2):
+        raise ModelError(f"A known length lies between two tracks, not {len(length.tracks)}.")
+    for track_id in length.tracks:
+        document.track(track_id)
+    world = attrs.evolve(document.world, seen=length, length=None, height=None)
+    return Edit(attrs.evolve(document, world=world), label, frame)
 
 
 def clear_masks(document: Document) -> Edit:

@@ -51,7 +51,7 @@ def delete_track(document: Document, track_id: str) -> Edit:
     """Delete a track and what hangs on it: pairs, mirrors, followers, a constant depth."""
     track = document.track(track_id)
     tracks = tuple(
-        attrs.evolve(other, mirror=None) if other.mirror == track_id else other
+        attrs.evolve(other, mirror=None, mirror_lag=None) if other.mirror == track_id else other
         for other in document.tracks
         if other.id != track_id
     )
@@ -66,8 +66,10 @@ def delete_track(document: Document, track_id: str) -> Edit:
         for character in document.characters
     )
     world = document.world
-    if world.depth_track == track_id:
-        world = attrs.evolve(world, depth_track=None)
+    if track_id in world.depth_tracks:
+        world = attrs.evolve(world, depth_tracks=tuple(each for each in world.depth_tracks if each != track_id))
+    if world.seen is not None and track_id in world.seen.tracks:
+        world = attrs.evolve(world, seen=attrs.evolve(world.seen, tracks=()))
     smaller = attrs.evolve(document, tracks=tracks, characters=characters, world=world)
     return Edit(smaller, f"Delete {track.name}")
 
@@ -148,20 +150,26 @@ def set_track_look(
     return Edit(document.with_track(track), f"{what} {track.name}")
 
 
-def set_mirror(document: Document, track_id: str, other_id: str | None) -> Edit:
-    """Say which two tracks are mirrors of each other; None separates."""
+def set_mirror(document: Document, track_id: str, other_id: str | None, *, lag: int | None = None) -> Edit:
+    """Say which two tracks are mirrors of each other; None separates.
+
+    ``lag`` is by how many frames the first is later than the second: half a stride in a walk, 0 in a bound; None finds
+    it from the tracks.
+    """
     track = document.track(track_id)
+    if lag is not None and document.clip is not None and abs(lag) >= document.clip.frame_count:
+        raise ModelError(f"A lag of {lag} frames is longer than the clip of {document.clip.frame_count}.")
     if other_id == track_id:
         raise ModelError(f"{track.name} cannot be its own mirror: choose the point on the other side of the body.")
     former = {track.mirror, other_id, track_id, document.track(other_id).mirror if other_id else None}
     tracks = []
     for each in document.tracks:
         if each.id == track_id:
-            tracks.append(attrs.evolve(each, mirror=other_id))
+            tracks.append(attrs.evolve(each, mirror=other_id, mirror_lag=lag if other_id else None))
         elif each.id == other_id:
-            tracks.append(attrs.evolve(each, mirror=track_id))
+            tracks.append(attrs.evolve(each, mirror=track_id, mirror_lag=None if lag is None else -lag))
         elif each.id in former and each.mirror in (track_id, other_id):
-            tracks.append(attrs.evolve(each, mirror=None))
+            tracks.append(attrs.evolve(each, mirror=None, mirror_lag=None))
         else:
             tracks.append(each)
     partner = document.track(other_id).name if other_id else "nothing"

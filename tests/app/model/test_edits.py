@@ -47,13 +47,13 @@ def test_deleting_a_track_leaves_nothing_hanging(document: Document) -> None:
     """Pairs, mirrors, followers and the constant depth go with the track."""
     document = characters.set_pair(document, "c3", "t1", 5).document
     document = tracks.set_mirror(document, "t1", "t2").document
-    document = scene.set_ground(document, "depth", depth_track="t1").document
+    document = scene.set_ground(document, "depth", depth_tracks=["t1"]).document
     document = poses.follow_track(document, "c3", 9, "t1").document
     document = tracks.delete_track(document, "t1").document
     assert "t1" not in document.character("c3").pairs
     assert not document.character("c3").following
     assert document.track("t2").mirror is None
-    assert document.world.depth_track is None
+    assert document.world.depth_tracks == ()
 
 
 def test_mirrors_are_mutual(document: Document) -> None:

@@ -10,7 +10,8 @@ from app.model.tracks import Track
 from app.model.values import Interval
 from app.model.world import WorldChoice
 from app.stages.animation import _hidden, _seen
-from app.stages.worldframe import ASSUMED_HEIGHT, make_world
+from app.stages.assumed import ASSUMED_HEIGHT
+from app.stages.worldframe import make_world
 from imitation import CameraPath
 from imitation.errors import InputError
 

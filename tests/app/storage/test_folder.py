@@ -42,6 +42,29 @@ def test_fields_of_a_newer_program_are_kept() -> None:
     assert again["document"]["clip"]["lens"] == "35 mm"
 
 
+@pytest.mark.parametrize(("old", "new"), [("t1", ("t1",)), (None, ())])
+def test_a_project_of_version_1_opens(old: str | None, new: tuple[str, ...]) -> None:
+    """It knew one track of constant depth, and no horizon; all else is as it was, and it is saved as version 2."""
+    body = json.loads(document_to_json(start()))
+    body["version"] = 1
+    world = body["document"]["world"]
+    for later in ("depth_tracks", "pitch", "roll", "height", "seen"):
+        del world[later]
+    for track in body["document"]["tracks"]:
+        del track["mirror_lag"]
+    world["depth_track"] = old
+    world["weather"] = "fair"
+    opened = document_from_json(json.dumps(body).encode(), "project.json")
+    assert opened.world.depth_tracks == new
+    assert opened.world.pitch is None
+    assert opened.world.seen is None
+    assert opened.tracks == start().tracks
+    again = json.loads(document_to_json(opened))
+    assert again["version"] == VERSION == 2
+    assert "depth_track" not in again["document"]["world"]
+    assert again["document"]["world"]["weather"] == "fair"
+
+
 def test_a_newer_format_is_refused_politely() -> None:
     """A file of a later version says that the program must be updated."""
     body = json.loads(document_to_json(Document()))
