@@ -116,15 +116,15 @@ def _paired(document: Document, character: Character) -> list[Track]:
     return [track for track in document.tracks if track.id in character.pairs]
 
 
-def _mirrors(document: Document, paired: list[Track]) -> tuple[tuple[str, str], ...]:
-    """Give (hidden, seen) pairs: of two mirrors the one with fewer clicks in sight follows the other."""
+def _mirrors(document: Document, paired: list[Track]) -> tuple[tuple[str, tuple[str, int | None]], ...]:
+    """Give (hidden, (seen, lag)): of two mirrors the one with fewer clicks in sight follows the other."""
     ids = {track.id for track in paired}
     found = []
     for track in paired:
         if track.mirror in ids:
             other = document.track(track.mirror)
             if (_in_sight(track), track.id) < (_in_sight(other), other.id):
-                found.append((track.id, other.id))
+                found.append((track.id, (other.id, track.mirror_lag)))
     return tuple(found)
 
 

@@ -11,10 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 from imitation.errors import InputError
 from imitation.motion.banded import Array
 from imitation.motion.keys import KeyTracks
+from imitation.motion.stride import agreed_lags, measured_lag
 from imitation.motion.transfer import transfer_track
 
-Mirror = str | tuple[str, int]
-"""A key point's partner on the other side, and by how many frames the key point is later (0)."""
+Mirror = str | tuple[str, int | None]
+"""A key point's partner on the other side, and by how many frames the key point is later (0); None finds it."""
 
 
 def mirror_motion(
@@ -48,7 +49,9 @@ def mirror_motion(
     rotation, centre = body_frames(points, rest)
     own = np.einsum("nji,nkj->nki", rotation, points - centre[:, None])
     earlier = np.arange(len(points))[:, None] - lags
-    frames = np.clip(np.where(earlier < 0, earlier + 2 * lags, earlier), 0, len(points) - 1)
+    # Two lags are a cycle: frames beyond the clip's ends have their like within it.
+    outside = (earlier < 0) | (earlier >= len(points))
+    frames = np.clip(np.where(outside, earlier + 2 * lags, earlier), 0, len(points) - 1)
     image = own[frames, partners]
     image = image - 2 * (image @ normal)[..., None] * normal
     image += hidden_rest - rest.mean(axis=0) - image[0]
@@ -146,9 +149,30 @@ def hidden_names(
     return tuple(hidden)
 
 
-def partner_of(mirror: Mirror) -> tuple[str, int]:
-    """Partner and lag in frames."""
-    return (mirror, 0) if isinstance(mirror, str) else (mirror[0], int(mirror[1]))
+def partner_of(mirror: Mirror) -> tuple[str, int | None]:
+    """Partner, and lag in frames or None where it is to be found."""
+    return (mirror, 0) if isinstance(mirror, str) else (mirror[0], None if mirror[1] is None else int(mirror[1]))
+
+
+def mirror_lags(lifted: Array, keys: KeyTracks, normal: Array, symmetry: Mapping[str, Mirror]) -> dict[str, int]:
+    """Lag of every mirrored key point, frames: given, or measured where both sides are seen.
+
+    Parameters
+    ----------
+    lifted : (n, k, 3) of the key points in ``keys``, world.
+    normal : (3,) of the plane of symmetry in frame 0.
+    """
+    rotation, centre = body_frames(lifted, keys.start)
+    own = np.einsum("nji,nkj->nki", rotation, lifted - centre[:, None])
+    image = own - 2 * (own @ normal)[..., None] * normal
+    measured: dict[str, int | None] = {}
+    for name, mirror in symmetry.items():
+        partner, lag = partner_of(mirror)
+        if lag is None and name in keys.names and partner in keys.names:
+            key, other = keys.names.index(name), keys.names.index(partner)
+            seen = keys.observed[:, key], keys.observed[:, other]
+            measured[name] = measured_lag(own[:, key], image[:, other], *seen)
+    return agreed_lags({name: partner_of(mirror)[1] for name, mirror in symmetry.items()}, measured)
 
 
 def follow_mirrors(
@@ -170,13 +194,14 @@ def follow_mirrors(
     count = len(lifted)
     filled = lifted.copy()
     normal = sagittal_normal(rest, _across(rest, vertices, symmetry))
+    lags = mirror_lags(lifted, keys, normal, symmetry)
     for key, name in enumerate(keys.names):
         if name in symmetry and not keys.observed[:, key].all():
-            partner, lag = partner_of(symmetry[name])
+            partner = partner_of(symmetry[name])[0]
             if partner not in keys.names:
                 continue
             other = keys.names.index(partner)
-            mirrored = _mirror_one(lifted, normal, keys.start, keys.start[key], other, lag)
+            mirrored = _mirror_one(lifted, normal, keys.start, keys.start[key], other, lags[name])
             seen = np.flatnonzero(keys.observed[:, key])
             boundary = {int(frame): lifted[frame, key] for frame in seen}
             filled[:, key] = transfer_track(mirrored, boundary)
@@ -187,7 +212,7 @@ def follow_mirrors(
             keys.start,
             place,
             keys.names.index(partner_of(symmetry[name])[0]),
-            partner_of(symmetry[name])[1],
+            lags[name],
         )
         for name, place in hidden.items()
     ]

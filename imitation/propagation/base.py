@@ -104,8 +104,8 @@ def solve_base(
     method : "joint" lifts all key points by one space-time solve; "paper" is the printed route: deform with rays,
         smooth the depths (eq. 12), deform with the upgraded 3D tracks.
     confidence : track name -> (n,) in [0, 1].
-    symmetry : track name -> its mirror on the other side, or (mirror, frames by which it is later). Where the track
-        is hidden it moves as its mirror does, also throughout the clip.
+    symmetry : track name -> its mirror on the other side, or (mirror, frames by which it is later); None for the
+        frames finds them from both tracks. Where the track is hidden it moves as its mirror does, also throughout.
     start : (v, 3) the character's pose in frame 0, world, see `start_pose`; lengths and offsets come from it. Default
         ``vertices``, which stay the shape that the deformation keeps to.
     loss, beta : of the anchors (eq. 3-4).

@@ -27,7 +27,7 @@ class Found:
 
 
 def turning(pitch: float, roll: float = 0.0, height: float = 1.6) -> CameraPath:
-    """A camera at a height that pans by 20 degrees about the vertical, held at a pitch and a roll, in its true world."""
+    """A camera at a height that pans by 20 degrees about the vertical, held at a pitch and a roll; its true world."""
     held = Rotation.from_euler("ZX", [-roll, pitch], degrees=True).as_matrix()
     turns = [Rotation.from_euler("z", angle, degrees=True).as_matrix() for angle in np.linspace(0, 20, 5)]
     rotations = np.stack([held @ LEVEL @ turn for turn in turns])

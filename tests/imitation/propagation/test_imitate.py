@@ -220,6 +220,24 @@ def test_a_hidden_limb_follows_its_mirror() -> None:
     assert error[0] < 0.7 * error[1]
 
 
+@pytest.mark.slow
+def test_the_lag_of_a_hidden_limb_is_that_of_the_gait() -> None:
+    """Told only who mirrors whom, the hidden fore leg moves half a stride later, as the hind legs show."""
+    walker = film("quadruped", 46, "flat", 60.0, seed=4)
+    rest, faces, cameras, tracks, pairs, contacts = walker.arguments
+    hidden = ["right front paw", "right front knee"]
+    without = {name: track for name, track in tracks.items() if name not in hidden}
+    stands = {name: spans for name, spans in contacts.items() if name not in hidden}
+    both = [*hidden, "right hind paw", "right hind knee"]
+    error = {}
+    for lag in (None, 0):
+        mirrors = {name: (name.replace("right", "left"), lag) for name in both}
+        made = imitate(rest, faces, cameras, without, pairs, stands, symmetry=mirrors, deformer=walker.deformer)
+        paw = pairs[hidden[0]]
+        error[lag] = np.linalg.norm((made.vertices - walker.walk.vertices)[16:, paw])
+    assert error[None] < 0.7 * error[0]
+
+
 @pytest.mark.parametrize(
     ("symmetry", "words"),
     [
