@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from app.actions.limbs import ambiguous_limbs, limb_lines
 from app.actions.session import Session
+from app.stages.results import World
 from app.stages.stage import Stage
 
 
@@ -19,6 +21,7 @@ def overview(session: Session) -> tuple[dict[str, Any], list[str]]:
         "clip": None
         if clip is None
         else {"file": clip.media.path, "frames": clip.frame_count, "size": [clip.width, clip.height], "fps": clip.fps},
+        "world": _world(session),
         "masks": list(document.masks),
         "tracks": {
             track.name: {
@@ -32,12 +35,38 @@ def overview(session: Session) -> tuple[dict[str, Any], list[str]]:
                 "mesh": character.mesh.path,
                 "pairs": len(character.pairs),
                 "edited_frames": list(character.edits),
+                "ambiguous": ambiguous_limbs(session, character.id),
             }
             for character in document.characters
         },
         "steps": steps,
     }
     return values, _lines(values, session)
+
+
+def _world(session: Session) -> dict[str, Any]:
+    """What is known of the world and what is assumed; None where it has not been found yet."""
+    choice, found = session.document.world, session.ready(session.stages.world)
+    values: dict[str, Any] = {"ground": choice.ground, "pitch": choice.pitch, "roll": choice.roll}
+    values |= {"camera_height": choice.height, "note": None, "metric": None}
+    if isinstance(found, World):
+        values |= {"note": found.note, "metric": found.metric}
+    return values
+
+
+def _world_lines(world: dict[str, Any]) -> list[str]:
+    if world["note"] is None:
+        return []
+    lines = [f"world       {world['note']}"]
+    if "level camera" in world["note"]:
+        lines.append(
+            "            the camera is taken as level: set --pitch DEGREES says how far it looks down in frame 0"
+        )
+    if not world["metric"]:
+        lines.append(
+            "            no length is known: set --length NAME NAME FRAME METRES, --length-pixels or --camera-height"
+        )
+    return lines
 
 
 def _state(session: Session, stage: Stage) -> dict[str, str]:
@@ -56,6 +85,7 @@ def _lines(values: dict[str, Any], session: Session) -> list[str]:
         lines.append(
             f"clip        {clip['file']}: {clip['frames']} frames of {width} x {height} at {clip['fps']:g} fps"
         )
+    lines += _world_lines(values["world"])
     clicks = sum(track["clicks"] for track in values["tracks"].values())
     contacts = sum(len(track["contacts"]) for track in values["tracks"].values())
     lines.append(f"masks       {len(values['masks'])} drawn")
@@ -63,6 +93,7 @@ def _lines(values: dict[str, Any], session: Session) -> list[str]:
     for name, character in values["characters"].items():
         edited = len(character["edited_frames"])
         lines.append(f"character   {name}: {character['pairs']} pairs, {edited} edited frames ({character['mesh']})")
+        lines += limb_lines(character["ambiguous"] or [])
     labels = {stage.name: stage.label for stage in session.stages.all()}
     for name, step in values["steps"].items():
         why = f": {step['why']}" if "why" in step else ""

@@ -9,6 +9,7 @@ from typing import Any
 import click
 import numpy as np
 
+from app.actions.limbs import ambiguous_limbs, limb_lines
 from app.actions.marks import character_named, track_named
 from app.actions.results import rate
 from app.actions.session import Session
@@ -86,9 +87,10 @@ def track(console: Console, project: Path, names: tuple[str, ...], target: Path 
 @click.command()
 @PROJECT
 @click.option("--character", "names", multiple=True, help="Only this character; may be given again.")
+@click.option("--skip-ambiguous", is_flag=True, help="Do not look for limbs that the video explains in two ways.")
 @click.pass_obj
-def animate(console: Console, project: Path, names: tuple[str, ...]) -> None:
-    """Move the characters as the filmed subject moves."""
+def animate(console: Console, project: Path, names: tuple[str, ...], skip_ambiguous: bool) -> None:
+    """Move the characters as the filmed subject moves, and say which limbs could be elsewhere."""
     with closing(Session.open(project)) as session:
         document = session.document
         chosen = [character_named(document, name) for name in names] or list(document.characters)
@@ -96,10 +98,15 @@ def animate(console: Console, project: Path, names: tuple[str, ...]) -> None:
             raise InputError("This project has no character yet: add one with set --character FILE.")
         stages = tuple(session.stages.animation(each.id) for each in chosen)
         solved = console.compute(session, "Animating", stages)
-        console.answer(
-            {each.name: result.report for each, result in zip(chosen, solved, strict=True)},
-            [line for each, result in zip(chosen, solved, strict=True) for line in _table(each.name, result)],
-        )
+        if not skip_ambiguous:
+            looks = tuple(session.stages.ambiguous(each.id) for each in chosen)
+            console.compute(session, "Looking for ambiguous limbs", looks)
+        values, lines = {}, []
+        for each, result in zip(chosen, solved, strict=True):
+            limbs = ambiguous_limbs(session, each.id)
+            values[each.name] = result.report if limbs is None else {**result.report, "ambiguous": limbs}
+            lines += [*_table(each.name, result), *limb_lines(limbs or [])]
+        console.answer(values, lines)
 
 
 def _table(name: str, result: Any) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -203,3 +204,64 @@ def test_check_tells_what_a_file_is(solved_project: Path, capsys: pytest.Capture
     folder = solved_project.parent
     told = answer(capsys, "check", folder / "clip.mp4", folder / "subject.ply", solved_project)
     assert [found["kind"] for found in told.values()] == ["video", "mesh", "project"]
+
+
+def test_ambiguous_limbs_are_told(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Animate looks for them, as values and as lines with the frame whose edit decides; info repeats what was found."""
+    before = answer(capsys, "info", project)["characters"]["subject"]
+    assert before["ambiguous"] is None or isinstance(before["ambiguous"], list)
+    told = answer(capsys, "animate", project)["subject"]
+    limbs = told["ambiguous"]
+    names = set(answer(capsys, "info", project)["tracks"])
+    for limb in limbs:
+        first, last = limb["frames"]
+        assert limb["limb"] in names
+        assert 0 <= first <= limb["decide"] <= last < FRAMES
+    assert answer(capsys, "info", project)["characters"]["subject"]["ambiguous"] == limbs
+    assert run(["animate", str(project)]) == DONE
+    said = capsys.readouterr().out
+    assert ("an edit of frame" in said) == bool(limbs)
+
+
+def test_a_project_becomes_metric_without_a_window(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A length between two clicked points of the scene, or the camera's height, scales the world; info says so."""
+    before = answer(capsys, "info", project)["world"]
+    assert before["metric"] is False
+    assert run(["info", str(project)]) == DONE
+    assert "no length is known" in capsys.readouterr().out
+    done = answer(capsys, "set", project, "--camera-height", 1.4)["done"]
+    assert done == ["Put the camera at 1.4 m"]
+    answer(capsys, "contacts", project)
+    world = answer(capsys, "info", project)["world"]
+    assert world["metric"] is True
+    assert "camera's height" in world["note"]
+    done = answer(capsys, "set", project, "--length-pixels", 0, 60, 150, 200, 150, 2.5)["done"]
+    assert done == ["Set a length of 2.5 m"]
+    assert answer(capsys, "info", project)["world"]["camera_height"] is None
+    names = list(answer(capsys, "info", project)["tracks"])
+    assert answer(capsys, "set", project, "--length", names[0], names[1], 0, 0.5)["done"] == ["Set a length of 0.5 m"]
+    answer(capsys, "contacts", project)
+    assert answer(capsys, "info", project)["world"]["metric"] is True
+
+
+def test_horizon_and_mirrors_are_set(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Pitch and roll, several points at a constant depth, mirrors with a lag or without."""
+    names = list(answer(capsys, "info", project)["tracks"])
+    done = answer(
+        capsys, "set", project, "--pitch", 4, "--roll", -1, "--ground", "depth", "--depth-of", names[0],
+        "--depth-of", names[1], "--mirror", names[0], names[1], "auto", "--mirror", names[2], names[3], -7,
+    )["done"]  # fmt: skip
+    assert "Tilt the camera by 4 degrees" in done
+    from app.actions.session import Session
+
+    with closing(Session.open(project)) as session:
+        document = session.document
+        assert document.world.pitch == 4
+        assert document.world.roll == -1
+        assert [document.track(each).name for each in document.world.depth_tracks] == names[:2]
+        lags = {track.name: track.mirror_lag for track in document.tracks}
+        assert lags[names[0]] is None
+        assert lags[names[2]] == -7
+        assert lags[names[3]] == 7
+        assert document.characters[0].solve.symmetry
+    assert run(["set", str(project), "--mirror", names[0], names[1], "soon"]) == BAD_INPUT
