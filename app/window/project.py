@@ -30,6 +30,7 @@ class Project(QObject):
     stage_finished = Signal(object)
     partial = Signal(object, object)
     work_changed = Signal()
+    work_progressed = Signal()
     failed = Signal(str, str)
     saved_changed = Signal()
     shown_at = Signal(int, str)
@@ -191,7 +192,7 @@ class Project(QObject):
     def _progressed(self, job: Job, fraction: float, label: str) -> None:
         if job in self.progress:
             self.progress[job] = (fraction, label)
-            self.work_changed.emit()
+            self.work_progressed.emit()
 
     def _partial(self, job: Job, stage: Stage, value: Any) -> None:
         if job in self.progress and not job.token.cancelled:

@@ -121,7 +121,8 @@ class Shell(QMainWindow):
         project.failed.connect(self.tell)
         project.saved_changed.connect(lambda: self.bar.show_document(project))
         project.shown_at.connect(self._shown_at)
-        project.work_changed.connect(lambda: self.bar.show_work(project))
+        for signal in (project.work_changed, project.work_progressed):
+            signal.connect(lambda: self.bar.show_work(project))
         for signal in (project.selection_changed, project.stage_finished, project.work_changed):
             signal.connect(lambda *_: self._refresh.start())
         self.character.attach(project, opened.loader)

@@ -20,6 +20,7 @@ from imitation.propagation.spans import Span, SpanSolver, cut_spans, sorted_outw
 
 if TYPE_CHECKING:
     from imitation.deformation import Deformer
+    from imitation.deformation.pose import Pose
 
 
 @attrs.frozen(eq=False)
@@ -146,10 +147,13 @@ def _prepare(
     """Solvers of the spans that have to be computed; the others' frames are copied from the earlier result."""
     solvers: list[SpanSolver] = []
     solved: dict[int, tuple[bytes, range]] = {}
+    firsts: dict[int, Pose] = {}
     for span in spans:
         if not span.touched or not len(span.frames):
             continue
-        solver = SpanSolver(base, span, vertices, deformer, smooth=smooth, follow=follow, two_pass=two_pass)
+        solver = SpanSolver(
+            base, span, vertices, deformer, smooth=smooth, follow=follow, two_pass=two_pass, firsts=firsts
+        )
         made = (solver.signature(), span.frames)
         solved[span.first.frame] = made
         if previous is not None and previous.base is base and previous._solved.get(span.first.frame) == made:

@@ -108,6 +108,7 @@ class SpanSolver:
         smooth: bool,
         follow: Mapping[int, int],
         two_pass: bool = True,
+        firsts: dict[int, Pose] | None = None,
     ) -> None:
         self.base, self.span, self.deformer, self.smooth = base, span, deformer, smooth
         self.keys = base.keys.vertices.tolist()
@@ -121,7 +122,8 @@ class SpanSolver:
         self._clocks = [swing_clock(base.keys.planted[:, key]) for key in range(len(self.keys))]
         self._shares = [self._share(clock) for clock in self._clocks]
         self._runs = [Run(self, end, frames) for end, frames in span.runs()]
-        self._firsts: dict[int, Pose] = {}
+        # The spans on both sides of an edited frame ask the same of it.
+        self._firsts = {} if firsts is None else firsts
         self._given: dict[int, Pose] = {}
         self._offsets: dict[int, tuple[list[Array], Array]] = {}
 
@@ -170,11 +172,18 @@ class SpanSolver:
         return self._given[end]
 
     def first_at(self, end: int) -> Pose:
-        """The first pass at an end: what the key points alone make of the base solution there."""
+        """The first pass at an end: what the key points alone make of the base solution there.
+
+        It must not remember where a control vertex was dragged; where there is none, it is nearly the pose itself.
+        """
         if end not in self._firsts:
+            knot = self.span.first if end == self.span.first.frame else self.span.last
+            assert knot is not None, "a span has the ends that it was made with"
+            alone = knot.committed is not None and knot.committed.keys() <= set(self.keys)
             asked = frame_constraints(self.base, end, self.key_targets(end), {})
             modes = typical_modes(self.base, self.deformer, [])
-            self._firsts[end] = self.deformer.solve_pose(asked, start=self.base.vertices[end], modes=modes)
+            start = self.given(end) if alone else self.base.vertices[end]
+            self._firsts[end] = self.deformer.solve_pose(asked, start=start, modes=modes)
         return self._firsts[end]
 
     def signature(self) -> bytes:
