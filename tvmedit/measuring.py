@@ -13,6 +13,7 @@ from imitation.errors import InputError
 from imitation.progress import Progress, silent
 from tvmedit.features import CylinderHistograms, Features, Method, SphericalHistograms, checked_meshes, facing
 from tvmedit.features.heading import turning
+from tvmedit.features.lengthwise import lengthwise_cues
 from tvmedit.features.measure import foot_cue, surface_samples
 from tvmedit.features.paper import ANGLE_BIN
 
@@ -82,7 +83,10 @@ def measure(
         raise InputError("The sequence has no frames: give at least one mesh.")
     features, robust = pass_.features()
     centres = np.array(pass_.robust.centres)
-    cues, turns = pass_.foot_cues(robust.height), turning(robust.histograms)
+    samples = np.array(pass_.samples)
+    cues, turns = lengthwise_cues(samples, robust.height, fps), turning(robust.histograms)
+    if cues is None:
+        cues = pass_.foot_cues(robust.height)
     return Measurement(
         features=features,
         headings=facing(cues, centres, robust.height, fps, None, turns),
@@ -90,7 +94,7 @@ def measure(
         height=robust.height,
         floor=float(robust.origin[2]),
         centres=centres,
-        samples=np.array(pass_.samples),
+        samples=samples,
         edge=float(np.median(pass_.robust.edges)),
         up=up,
     )

@@ -7,8 +7,10 @@ import pytest
 
 import tvmedit
 from imitation import InputError
-from resources.performer import Capture
+from resources.performer import Capture, Part, perform, perform_hound
 from tvmedit.features import Features, hann_taps, yaw_free_atom_distances
+from tvmedit.features.lengthwise import lengthwise_cues
+from tvmedit.measuring import measure
 
 SQUARE = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
 
@@ -127,3 +129,22 @@ def test_one_frame_and_a_motionless_sequence_stay_whole(capture: Capture) -> Non
     still = tvmedit.analyse([mesh] * 40, fps=15).structure
     assert len(still.clusters) == 1
     assert "hardly moves" in still.reason
+
+
+def test_a_long_body_faces_along_itself() -> None:
+    """The hound's headings are those of its trunk, in place and on the way; nobody on two legs counts as long."""
+    capture = perform_hound([Part("trot", 3), Part("bow", 2)], seed=5, cell=0.04)
+    turn = np.deg2rad(40.0)
+    c, s = np.cos(turn), np.sin(turn)
+    spin = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    frames = range(0, len(capture), 3)
+    meshes = [(capture.mesh(k)[0] @ spin.T, capture.mesh(k)[1]) for k in frames]
+    headings = measure(meshes, fps=25 / 3).headings
+    assert np.abs(np.rad2deg(headings) - 40).max() < 6
+    back = [(vertices * [-1, -1, 1], faces) for vertices, faces in meshes]
+    flipped = measure(back, fps=25 / 3).headings
+    assert np.abs(np.rad2deg(np.angle(np.exp(1j * (flipped - headings - np.pi))))).max() < 1e-3
+    for motion in ("twist", "squat", "bend", "jumping jack"):
+        person = perform([Part(motion, 2)], fps=10, cell=0.05)
+        samples = measure(person.meshes(), fps=10).samples
+        assert lengthwise_cues(samples, 1.75, 10) is None

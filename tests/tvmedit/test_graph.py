@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 
+import attrs
 import numpy as np
 import pytest
 
@@ -160,3 +161,17 @@ def test_a_cut_is_blended_and_a_broken_one_refused(capture: Capture, graph: tvme
     meshes = [capture.mesh(frame)[:2] for frame in (0, int(capture.boundaries[0]) - 15)]
     far = tvmedit.register(meshes[0], (meshes[1][0] + [0.9, 0, 0], meshes[1][1]), height=1.75, edge=0.024, iterations=8)
     assert far.reason
+
+
+def test_a_cut_between_the_ends_of_two_sequences_is_refused(capture: Capture) -> None:
+    """A motion played once to the end of its sequence, then one from the start of another: no blend."""
+    frames = [capture.mesh(k)[:2] for k in range(24)]
+    one, two = (tvmedit.analyse(part, fps=15) for part in (frames[:12], frames[12:]))
+    graph = tvmedit.motion_graph([one, two], mu=1e6, textons=[(0, 0, 11), (1, 0, 11)])
+    graph = attrs.evolve(graph, nodes=tuple(attrs.evolve(node, cyclic=False) for node in graph.nodes))
+    ends = np.where(np.eye(2, dtype=bool)[..., None], -1, np.array([11, 0]))
+    performance = tvmedit.compose(attrs.evolve(graph, transitions=ends), [0, 1])
+    blend = tvmedit.blend_cut(graph, performance, performance.cuts[0], lambda s, f: frames[12 * s + f])
+    assert blend.shapes == {}
+    assert "share no frames" in blend.reason
+    assert blend.step_after == blend.step_before > 0

@@ -104,6 +104,10 @@ def blend_cut(
     report = progress or silent
     pairs = _Pairs(graph, performance, cut, mesh_of)
     first, last = blend_window(graph, performance, cut, seconds)
+    if last < first:
+        step = _steps(pairs, {}, cut, first, last)
+        reason = "The cut is left as it is: one sequence ends at it and the other begins, so they share no frames."
+        return Blend(cut, {}, step, step, {}, reason)
     centre = 0 if last >= 0 else last
     found: dict[int, Registration] = {}
     tried: dict[int, float] = {}
@@ -168,23 +172,35 @@ class _Pairs:
         self.target = graph.nodes[cut.target].sequence
         self.height = graph.analyses[self.source].height
         self.edge = max(graph.analyses[self.source].edge, graph.analyses[self.target].edge)
-        self._known: dict[int, tuple[Shape, Shape]] = {}
+        self._known: dict[tuple[bool, int], Shape] = {}
 
     def shapes(self, k: int) -> tuple[Shape, Shape]:
         """The clip that is left, going on, and the one entered."""
-        if k not in self._known:
-            earlier = _load(self.graph, self.mesh_of, self.source, self.cut.leave + 1 + k)
-            later = _load(self.graph, self.mesh_of, self.target, self.cut.enter + k)
-            place = self.performance.place
-            self._known[k] = (
-                attrs.evolve(earlier, vertices=place(self.cut.position - 1, earlier.vertices)),
-                attrs.evolve(later, vertices=place(self.cut.position, later.vertices)),
-            )
-        return self._known[k]
+        return self.earlier(k), self.later(k)
+
+    def earlier(self, k: int) -> Shape:
+        """The clip that is left; its sequence may end at the cut."""
+        return self._shape(True, k)
+
+    def later(self, k: int) -> Shape:
+        """The clip that is entered; its sequence may begin at the cut."""
+        return self._shape(False, k)
+
+    def _shape(self, before: bool, k: int) -> Shape:
+        if (before, k) not in self._known:
+            sequence, frame = (self.source, self.cut.leave + 1) if before else (self.target, self.cut.enter)
+            shape = _load(self.graph, self.mesh_of, sequence, frame + k)
+            position = self.cut.position - 1 if before else self.cut.position
+            placed = self.performance.place(position, shape.vertices)
+            self._known[before, k] = attrs.evolve(shape, vertices=placed)
+        return self._known[before, k]
 
 
 def blend_window(graph: MotionGraph, performance: Performance, cut: Cut, seconds: float) -> tuple[int, int]:
-    """First and last offset from the cut: what both sequences have, and no nearer to another joint than half-way."""
+    """First and last offset from the cut: what both sequences have, and no nearer to another joint than half-way.
+
+    The last lies before the first where one clip ends, and the other begins, with its sequence.
+    """
     half = max(1, round(seconds * graph.fps / 2))
     positions = [0, *(other.position for other in performance.cuts if other.kind == "cut"), len(performance)]
     earlier = max(position for position in positions if position < cut.position)
@@ -194,7 +210,7 @@ def blend_window(graph: MotionGraph, performance: Performance, cut: Cut, seconds
     first = -min(half, (cut.position - earlier) // 2, cut.enter, _since_wrap(performance, cut))
     room = min(len(source) - 2 - cut.leave, len(target) - 1 - cut.enter, _until_wrap(performance, cut))
     last = min(half - 1, (later - cut.position) // 2 - 1, room)
-    return first, max(first, last)
+    return first, last
 
 
 def _since_wrap(performance: Performance, cut: Cut) -> int:
@@ -244,6 +260,6 @@ def _steps(pairs: _Pairs, shapes: dict[int, Shape], cut: Cut, first: int, last: 
         position = cut.position + k
         if position in shapes:
             return shapes[position].vertices
-        return pairs.shapes(k)[0 if k < 0 else 1].vertices
+        return (pairs.earlier(k) if k < 0 else pairs.later(k)).vertices
 
     return max(surface_step(at(k), at(k + 1)) for k in range(min(first, -1), max(last, 0)))

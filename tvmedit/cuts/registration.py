@@ -12,8 +12,11 @@ from tvmedit.cuts.rotations import rotation_matrices, rotation_vectors
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int32]
-SPACING = 0.058
-"""Distance of nodes in body heights: 10 cm on a person."""
+SPACING = 0.1015
+"""Distance of nodes on a person, metres."""
+PERSON = 1.75
+SKIN = 2.2
+"""Height in metres, and surface in square metres of a body that is large for it: what lies low is not small."""
 SAMPLES = 1000
 POINT_SHARE = 0.25
 FACING = 0.3
@@ -108,13 +111,20 @@ def register(
         With its verdict; never raises for a bad fit.
     """
     vertices, faces = source
-    metre = height / 1.75
-    graph = spread_nodes(vertices, faces, SPACING * height)
+    metre = body_scale(vertices, faces, height)
+    graph = spread_nodes(vertices, faces, SPACING * metre)
     rotations, moves = _first_guess(graph, start)
     fit = _Fit(vertices, vertex_normals(vertices, faces), target[0], vertex_normals(*target), graph, metre)
     for stiffness, gate in _schedule(iterations, warm=start is not None):
         rotations, moves = fit.step(rotations, moves, stiffness, gate * metre)
     return _judged(Registration(vertices, faces, graph, rotations, moves), target, edge)
+
+
+def body_scale(vertices: Array, faces: Faces, height: float) -> float:
+    """What a metre of a person is on this body: by its height, or by its surface where it lies long and low."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    area = 0.5 * float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum())
+    return max(height / PERSON, float(np.sqrt(area / SKIN)))
 
 
 def _schedule(iterations: int, *, warm: bool) -> list[tuple[float, float]]:
