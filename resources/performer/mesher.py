@@ -23,7 +23,7 @@ def _triangles() -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 
 @njit(cache=True, nogil=True)
-def nearest_capsule(points, capsules):  # pragma: no cover - compiled
+def nearest_capsule(points, capsules):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     """Row of the capsule whose surface is nearest to each point (n, 3)."""
     nearest = np.zeros(len(points), np.int64)
     for i in range(len(points)):
@@ -37,7 +37,7 @@ def nearest_capsule(points, capsules):  # pragma: no cover - compiled
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _distance(x, y, z, capsule):  # pragma: no cover - compiled
+def _distance(x, y, z, capsule):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     """Distance to the surface of a tapered capsule, negative inside."""
     ax, ay, az = x - capsule[0], y - capsule[1], z - capsule[2]
     bx, by, bz = capsule[3] - capsule[0], capsule[4] - capsule[1], capsule[5] - capsule[2]
@@ -48,7 +48,7 @@ def _distance(x, y, z, capsule):  # pragma: no cover - compiled
 
 
 @njit(cache=True, nogil=True, inline="always")
-def _bump(x, y, z, bumps):  # pragma: no cover - compiled
+def _bump(x, y, z, bumps):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     """Sum of plane waves: each row of bumps is a wave vector (3), a phase and an amplitude in metres."""
     total = 0.0
     for row in range(len(bumps)):
@@ -57,7 +57,7 @@ def _bump(x, y, z, bumps):  # pragma: no cover - compiled
 
 
 @njit(cache=True, nogil=True)
-def _grid(capsules, bumps, origin, shape, cell):  # pragma: no cover - compiled
+def _grid(capsules, bumps, origin, shape, cell):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     """Smooth distance on the grid's nodes; nodes out of every capsule's reach stay positive."""
     total = np.zeros(shape)
     low, high = np.zeros(3, np.int64), np.zeros(3, np.int64)
@@ -87,7 +87,7 @@ def _grid(capsules, bumps, origin, shape, cell):  # pragma: no cover - compiled
 
 
 @njit(cache=True, nogil=True)
-def _march(field, origin, cell, edges, triangles, counts):  # pragma: no cover - compiled
+def _march(field, origin, cell, edges, triangles, counts):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     """Marching cubes with shared vertices."""
     nx, ny, nz = field.shape
     index = np.full((nx, ny, nz, 3), -1, np.int32)
@@ -173,4 +173,4 @@ def _colours(
     axis = capsules[nearest, 3:6] - capsules[nearest, :3]
     along = ((vertices - capsules[nearest, :3]) * axis).sum(axis=1) / (np.linalg.norm(axis, axis=1) + 1e-9)
     shade = 1.0 + 0.10 * np.sin(along / 0.05 * np.pi)
-    return np.clip(colour * shade[:, None], 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(colour * shade[:, None], 0, 255), np.uint8)

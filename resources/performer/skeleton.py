@@ -34,7 +34,7 @@ MATERIALS = np.array(
 
 
 @njit(cache=True, nogil=True)
-def _turn(axis, angle):  # pragma: no cover - compiled
+def _turn(axis, angle):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     """Rotation by an angle about axis 0, 1 or 2."""
     c, s = np.cos(angle), np.sin(angle)
     rotation = np.eye(3)
@@ -126,7 +126,7 @@ def body_capsules(joints):
 
 
 @njit(cache=True, nogil=True)
-def _put(capsules, row, first, second, first_radius, second_radius):  # pragma: no cover - compiled
+def _put(capsules, row, first, second, first_radius, second_radius):  # type: ignore[no-untyped-def]  # pragma: no cover - compiled
     capsules[row, 0:3] = first
     capsules[row, 3:6] = second
     capsules[row, 6] = first_radius

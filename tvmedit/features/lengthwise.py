@@ -51,4 +51,4 @@ def lengthwise_cues(samples: NDArray[np.floating], height: float, fps: float) ->
     if abs(forward) < TRAVEL_SPEED * fps * 0.2:
         along = np.einsum("npi,ni->np", ground, axis)
         forward = float((along**3 * centred[:, :, 2]).sum())
-    return SHOE * np.where(forward < 0, -1.0, 1.0) * axis
+    return np.asarray(SHOE * np.where(forward < 0, -1.0, 1.0) * axis)
