@@ -25,6 +25,7 @@ FEWEST_FRAMES = 3
 COVERED = 0.98  # of a picture under masks: nothing is left to measure
 SHIFT = 2.0  # pixels by which the background must move, beside what turning does
 NEAR, FAR = 0.8, 1.4  # factors by which the range of depths is widened
+NEIGHBOURS = 4  # frames on both sides whose points are likely in sight
 FITTING = 0.35  # of the matches that must obey the cameras
 WITHIN = 3.0  # pixels at a width of 960
 
@@ -111,6 +112,20 @@ def find_range(frames: Sequence[Any], cameras: CameraPath, masks: Sequence[Any] 
             f"camera moves too little; {INSTEAD}."
         )
     return Range(NEAR * float(low), FAR * float(high), float(middle))
+
+
+def range_near(cameras: CameraPath, frame: int, whole: Range) -> Range:
+    """The range of depths to search in one frame: of the points observed in it and its neighbours, else the clip's."""
+    if not len(cameras.observations):
+        return whole
+    close = np.abs(cameras.observations[:, 0] - frame) <= NEIGHBOURS
+    names = np.unique(cameras.observed[close])
+    z = cameras[frame].depth(cameras.points[names])
+    z = z[z > 0]
+    if len(z) < 50:
+        return whole
+    low, middle, high = np.percentile(z, [1, 50, 99])
+    return Range(max(NEAR * float(low), 0.05 * float(middle)), FAR * float(high), float(middle))
 
 
 def _seen_depths(cameras: CameraPath, shape: tuple[int, ...]) -> Array:

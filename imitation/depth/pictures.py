@@ -115,8 +115,10 @@ class Pictures:
 
         grey = cv2.cvtColor(self.colour(frame), cv2.COLOR_RGB2GRAY).astype(np.float32)
         side = 2 * round(LOCAL * max(self.size) / 960) + 1
-        mean = cv2.boxFilter(grey, -1, (side, side))
+        hidden = self.hidden(frame).astype(np.float32)
+        # The mean of what is not hidden: the subject's brightness must not reach past its rim.
+        share = cv2.boxFilter(1 - hidden, -1, (side, side))
+        mean = cv2.boxFilter(grey * (1 - hidden), -1, (side, side)) / np.maximum(share, np.float32(1e-3))
         across = cv2.Sobel(grey, cv2.CV_32F, 1, 0, ksize=1, scale=0.5)
         down = cv2.Sobel(grey, cv2.CV_32F, 0, 1, ksize=1, scale=0.5)
-        hidden = self.hidden(frame).astype(np.float32)
         return np.ascontiguousarray(np.stack([grey - mean, across, down, hidden], axis=-1))

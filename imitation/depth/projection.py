@@ -29,8 +29,14 @@ def projected(source: DepthMap, camera: Camera, size: tuple[int, int], least: in
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse = np.where(source.confidence >= least, np.nan_to_num(1 / source.depth, nan=0.0), 0).astype(np.float32)
-    here = (source.camera.K, source.camera.R, source.camera.T)
-    maps = geometry(here, [(camera.K, camera.R, camera.T)])
+    return projected_inverse(inverse, source.camera, camera, size)
+
+
+def projected_inverse(
+    inverse: NDArray[np.float32], source: Camera, camera: Camera, size: tuple[int, int]
+) -> NDArray[np.float32]:
+    """The same for inverse depths (h, w), 0 where none, that a camera ``source`` sees."""
+    maps = geometry((source.K, source.R, source.T), [(camera.K, camera.R, camera.T)])
     shape = size[::-1]
     front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
     for collect in (False, True):

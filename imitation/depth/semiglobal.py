@@ -16,7 +16,7 @@ _FAR = 8000  # no path comes from outside the volume
 
 def semiglobal(
     volume: NDArray[np.uint8], grey: NDArray[np.uint8], *, small: int = SMALL, large: int = LARGE, least: int = LEAST
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+) -> NDArray[np.float32]:
     """Choose a plane for every pixel.
 
     Parameters
@@ -26,8 +26,7 @@ def semiglobal(
 
     Returns
     -------
-    plane : (h, w) index of the best plane, with a parabola's fraction.
-    margin : (h, w) how much worse the best plane is than the best of those not beside it, cost of one path.
+    float32 (h, w) index of the best plane, with a parabola's fraction.
     """
     steps = np.arange(256, dtype=np.float64)
     table = np.maximum(large / (1 + steps / SOFTENING), least).round().astype(np.int16)
@@ -35,9 +34,8 @@ def semiglobal(
     _paths(volume, grey, np.int16(small), table, total, False)
     _paths(volume, grey, np.int16(small), table, total, True)
     plane = np.empty(grey.shape, np.float32)
-    margin = np.empty(grey.shape, np.float32)
-    _choose(total, plane, margin)
-    return plane, margin
+    _choose(total, plane)
+    return plane
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -90,7 +88,7 @@ def _paths(volume: Any, grey: Any, small: Any, table: Any, total: Any, backward:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _choose(total: Any, plane: Any, margin: Any) -> None:
+def _choose(total: Any, plane: Any) -> None:
     height, width, depth = total.shape
     for y in range(height):
         for x in range(width):
@@ -106,8 +104,3 @@ def _choose(total: Any, plane: Any, margin: Any) -> None:
                 if bend > 0:
                     value += 0.5 * (before - after) / bend
             plane[y, x] = value
-            second = 65535.0
-            for d in range(depth):
-                if abs(d - best) > 2:
-                    second = min(second, float(sums[d]))
-            margin[y, x] = (second - float(sums[best])) / 8

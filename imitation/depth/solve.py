@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from imitation.cameras.path import CameraPath
 from imitation.depth.agreement import agreeing
-from imitation.depth.checks import Range, check_input, find_range
+from imitation.depth.checks import Range, check_input, find_range, range_near
 from imitation.depth.depthmap import DepthMap, resized
 from imitation.depth.pictures import LONGEST, Pictures
+from imitation.depth.projection import consensus, projected_inverse
 from imitation.depth.semiglobal import semiglobal
-from imitation.depth.sweep import geometry, sweep
+from imitation.depth.sweep import NEUTRAL, geometry, sweep
 from imitation.depth.views import choose_views, key_frames
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
@@ -30,12 +31,20 @@ class Sketch:
 
     Attributes
     ----------
-    frame : which frame. inverse : float32 (h, w) inverse depth. margin : float32 (h, w) how sure the choice was.
+    frame : which frame. inverse : float32 (h, w) inverse depth, everywhere.
+    seen : bool (h, w) whether any view shows the place; elsewhere it is only what lies around.
+    step : difference of inverse depths between two planes of the search.
     """
 
     frame: int
     inverse: NDArray[np.float32]
-    margin: NDArray[np.float32]
+    seen: NDArray[np.bool_]
+    step: float
+
+    @property
+    def measured(self) -> NDArray[np.float32]:
+        """Inverse depth (h, w), 0 where no view shows the place."""
+        return np.where(self.seen, self.inverse, np.float32(0))
 
 
 class DepthSolver:
@@ -65,9 +74,13 @@ class DepthSolver:
         self.pictures = Pictures(frames, cameras, masks, longest)
         self.reach = reach or find_range(frames, cameras, masks)
         count = planes or (PLANES_LARGE if max(self.pictures.size) > LARGE else PLANES)
-        self.planes = np.linspace(1 / self.reach.far, 1 / self.reach.near, count).astype(np.float32)
-        self.step = float(self.planes[1] - self.planes[0])
+        self._count = count
         self.sigma = 0.7 * max(1.0, max(self.pictures.size) / 480)
+
+    def planes(self, frame: int) -> NDArray[np.float32]:
+        """Inverse depths that are tried in a frame, evenly spaced over what is seen near it."""
+        reach = range_near(self.pictures.cameras, frame, self.reach)
+        return np.linspace(1 / reach.far, 1 / reach.near, self._count).astype(np.float32)
 
     def key_frames(self) -> list[int]:
         """Frames whose depth serves all others."""
@@ -75,7 +88,8 @@ class DepthSolver:
 
     def views(self, frame: int, keys: Sequence[int]) -> list[int]:
         """The frames in which a frame's depth is measured."""
-        return choose_views(self.pictures.cameras, frame, set(keys), self.pictures.full, self.reach.middle)
+        middle = range_near(self.pictures.cameras, frame, self.reach).middle
+        return choose_views(self.pictures.cameras, frame, set(keys), self.pictures.full, middle)
 
     def first(self, frame: int, keys: Sequence[int]) -> Sketch:
         """Depth from the pictures alone."""
@@ -89,20 +103,38 @@ class DepthSolver:
         """The depth map of a frame, with the number of the others that agree, at the size of the frames."""
         import cv2
 
-        pictures = self.pictures
+        pictures, sketch = self.pictures, sketches[frame]
         camera = pictures.camera(frame)
         others = [s for f, s in sketches.items() if f != frame]
         count = agreeing(
-            sketches[frame].inverse, camera, [s.inverse for s in others], [pictures.camera(s.frame) for s in others],
-            1.5 * self.step,
+            sketch.measured, camera, [s.measured for s in others], [pictures.camera(s.frame) for s in others],
+            1.5 * sketch.step,
         )  # fmt: skip
-        inverse = resized(sketches[frame].inverse, pictures.full, 3 * self.step)
+        inverse, count = self._filled(sketch, count, others)
+        inverse = resized(inverse, pictures.full, 3 * sketch.step)
         confidence = cv2.resize(count, pictures.full, interpolation=cv2.INTER_NEAREST_EXACT)
         depth = (1 / inverse).astype(np.float32)
         if pictures.masks is not None:
             hidden = np.asarray(pictures.masks[frame]).astype(bool)
             depth[hidden], confidence[hidden] = np.nan, 0
-        return DepthMap(frame, depth, confidence, pictures.cameras[frame], self.step * self.reach.middle)
+        middle = float(np.median(sketch.inverse))
+        return DepthMap(frame, depth, confidence, pictures.cameras[frame], sketch.step / middle)
+
+    def _filled(
+        self, sketch: Sketch, count: NDArray[np.uint8], others: Sequence[Sketch]
+    ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+        """What no view shows, such as the edge of the first picture, from the other maps, where these know it."""
+        near = sorted(others, key=lambda each: (abs(each.frame - sketch.frame), each.frame))[:6]
+        if sketch.seen.all() or not near:
+            return sketch.inverse, count
+        pictures = self.pictures
+        layers = np.stack([
+            projected_inverse(each.measured, pictures.camera(each.frame), pictures.camera(sketch.frame), pictures.size)
+            for each in near
+        ])  # fmt: skip
+        brought, support = consensus(layers, 1.5 * sketch.step)
+        lent = ~sketch.seen & (brought > 0)
+        return np.where(lent, brought, sketch.inverse), np.where(lent, support, count).astype(np.uint8)
 
     def _pass(self, frame: int, keys: Sequence[int], known: Mapping[int, Sketch]) -> Sketch:
         pictures = self.pictures
@@ -115,13 +147,19 @@ class DepthSolver:
         prior = None
         if known:
             nothing = np.zeros(pictures.size[::-1], np.float32)
-            prior = np.stack([known[v].inverse if v in known else nothing for v in views])
+            prior = np.stack([known[v].measured if v in known else nothing for v in views])
+        planes = self.planes(frame)
         volume = sweep(
             pictures.signal(frame), pictures.hidden(frame), np.stack([pictures.signal(v) for v in views]),
-            geometry(pose(frame), [pose(v) for v in views]), self.planes, prior, self.sigma,
+            geometry(pose(frame), [pose(v) for v in views]), planes, prior, self.sigma,
         )  # fmt: skip
-        plane, margin = semiglobal(volume, pictures.grey(frame))
-        return Sketch(frame, (self.planes[0] + plane * np.float32(self.step)).astype(np.float32), margin)
+        grey = pictures.grey(frame)
+        grey[pictures.hidden(frame) > 0] = 128  # the subject's edges are none of the background's
+        plane = semiglobal(volume, grey)
+        step = float(planes[1] - planes[0])
+        chosen = np.rint(plane).astype(np.int64)[..., None]
+        seen = np.take_along_axis(volume, chosen, axis=2)[..., 0] != NEUTRAL
+        return Sketch(frame, (planes[0] + plane * np.float32(step)).astype(np.float32), seen, step)
 
 
 def background_depth(

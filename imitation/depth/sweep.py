@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 INTENSITY, GRADIENT = 0.35, 0.65  # shares of the two differences in the cost
 INTENSITY_CUT, GRADIENT_CUT = 20.0, 12.0  # grey levels from which a difference is as bad as can be
 SHARE = 0.75  # of the views that see a place: the best are averaged
-NEUTRAL = 128  # cost where nothing can be said
+NEUTRAL = 128  # cost where nothing can be said: no view sees the place, or the subject hides it
 FLOOR = 0.3  # what the geometric prior leaves at least of a likelihood
 ENOUGH = 5  # of the 9 pixels round a place must be seen
 MOST_VIEWS = 8
@@ -225,7 +225,9 @@ def _best_share(values: Any, seen: Any, network: Any, total: Any, out: Any) -> N
     for d in range(depth):
         number = np.float32(np.int16(np.float32(SHARE) * np.float32(seen[d]) + np.float32(0.9999)))
         mean = np.float32(total[d]) / max(number, np.float32(1)) + np.float32(0.5)
-        out[d] = np.uint8(mean) if seen[d] > 0 else np.uint8(NEUTRAL)
+        # A measured cost is never the neutral one, so that what no view sees can be told from it.
+        cost = np.uint8(mean) if np.uint8(mean) != np.uint8(NEUTRAL) else np.uint8(NEUTRAL + 1)
+        out[d] = cost if seen[d] > 0 else np.uint8(NEUTRAL)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -14,6 +14,7 @@ BASELINES = (0.02, 0.045, 0.07, 0.1)  # of the middle depth, on both sides
 BETWEEN = (0.03, 0.057, 0.085, 0.12, 0.14)  # where one side has too few
 APART = 0.022  # of the middle depth, from one key frame to the next
 MOST_KEYS = 24
+AHEAD = 0.35  # what a step ahead shifts the picture on average, beside a step sideways
 OVERLAP = 0.4  # of a frame's pixels that another must see
 
 
@@ -54,8 +55,8 @@ def choose_views(
 
     A key frame stands in for a frame with nearly its baseline, since it brings its own depth to the second pass.
     """
-    centres = cameras.centres
-    offset = (centres - centres[frame]) / middle
+    offset = (cameras.centres - cameras[frame].centre) @ cameras.R[frame].T / middle
+    offset[:, 2] *= AHEAD
     away = np.linalg.norm(offset, axis=1)
     near = [v for v in range(len(cameras)) if v != frame and away[v] <= 2 * BETWEEN[-1]]
     usable = np.array([v for v in near if overlap(cameras, frame, v, size, middle) >= OVERLAP], np.int64)

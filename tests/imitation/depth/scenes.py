@@ -71,6 +71,18 @@ def ray_cast(
     return depth, index
 
 
+def distance_to(parts: list[Rectangle], points: Floats) -> Floats:
+    """Distances (n,) of points (n, 3) from the nearest rectangle."""
+    nearest = np.full(len(points), np.inf)
+    for part in parts:
+        local = points - part.corner
+        a = np.clip(local @ part.right / (part.right @ part.right), 0, 1)
+        b = np.clip(local @ part.down / (part.down @ part.down), 0, 1)
+        away = np.linalg.norm(local - a[:, None] * part.right - b[:, None] * part.down, axis=1)
+        nearest = np.minimum(nearest, away)
+    return nearest
+
+
 def _grain(random: np.random.Generator, width: int, height: int, contrast: float) -> NDArray[np.uint8]:
     """A picture (h, w, 3) of noise in octaves from 2.5 to 60 texels, the colour less strong than the light."""
     import cv2

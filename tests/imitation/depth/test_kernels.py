@@ -1,0 +1,158 @@
+"""The compiled loops against plain code."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from imitation.depth.agreement import agreeing
+from imitation.depth.projection import consensus
+from imitation.depth.semiglobal import LARGE, LEAST, SMALL, SOFTENING, semiglobal
+from imitation.depth.sweep import (
+    FLOOR,
+    GRADIENT,
+    GRADIENT_CUT,
+    INTENSITY,
+    INTENSITY_CUT,
+    SHARE,
+    _network,
+    geometry,
+    sweep,
+)
+from imitation.geometry.projection import Camera
+from resources.world.camera import lateral_camera
+
+SIZE = (48, 32)
+PLANES = np.linspace(0.08, 0.3, 24).astype(np.float32)
+
+
+def signals(seed: int, count: int) -> np.ndarray:
+    """Smooth signals (count, h, w, 4), a corner of each masked."""
+    random = np.random.default_rng(seed)
+    made = np.stack([cv2.GaussianBlur(random.normal(size=(SIZE[1], SIZE[0], 4)), (0, 0), 1.5) for _ in range(count)])
+    made[..., 0] *= 120
+    made[..., 1:3] *= 40
+    made[..., 3] = 0
+    made[:, :6, :9, 3] = 1
+    return made.astype(np.float32)
+
+
+def plain_sweep(reference: np.ndarray, views: np.ndarray, poses: list[Camera], camera: Camera, prior: np.ndarray | None,
+                sigma: float) -> np.ndarray:  # fmt: skip
+    """The same by remapping whole pictures, NaN where not seen."""
+    columns, rows = np.meshgrid(np.arange(SIZE[0], dtype=float), np.arange(SIZE[1], dtype=float))
+    volume = np.zeros((SIZE[1], SIZE[0], len(PLANES)))
+    for d, w in enumerate(PLANES):
+        points = camera.lift(np.stack([columns, rows], -1), np.full(columns.shape, 1 / w))
+        costs = []
+        for n, pose in enumerate(poses):
+            pixels = pose.project(points)
+            x, y = (np.ascontiguousarray(pixels[..., i]).astype(np.float32) for i in (0, 1))
+            seen = (x >= 0) & (y >= 0) & (x < SIZE[0] - 1.001) & (y < SIZE[1] - 1.001) & (reference[..., 3] == 0)
+            warped = cv2.remap(views[n].astype(np.float64), x, y, cv2.INTER_LINEAR)
+            x0, y0 = np.clip(x.astype(int), 0, SIZE[0] - 2), np.clip(y.astype(int), 0, SIZE[1] - 2)
+            masked = sum(views[n, y0 + i, x0 + j, 3] for i in (0, 1) for j in (0, 1)) > 0
+            cost = INTENSITY * np.minimum(np.abs(warped[..., 0] - reference[..., 0]), INTENSITY_CUT) / INTENSITY_CUT
+            slope = np.abs(warped[..., 1] - reference[..., 1]) + np.abs(warped[..., 2] - reference[..., 2])
+            cost = cost + GRADIENT * np.minimum(slope, GRADIENT_CUT) / GRADIENT_CUT
+            if prior is not None:
+                at = prior[n][np.clip((y + 0.5).astype(int), 0, 31), np.clip((x + 0.5).astype(int), 0, 47)]
+                back = camera.project(pose.lift(np.stack([x, y], -1), 1 / np.where(at > 0, at, 1)))
+                apart = ((back - np.stack([columns, rows], -1)) ** 2).sum(-1)
+                keep = np.maximum(np.exp(-apart / (2 * sigma**2)), FLOOR)
+                cost = np.where(at > 0, 1 - (1 - cost) * keep, cost)
+            costs.append(np.where(seen & ~masked, 255 * cost, np.nan))
+        padded = np.pad(np.array(costs), ((0, 0), (1, 1), (1, 1)), constant_values=np.nan)
+        block = np.stack([padded[:, i : i + SIZE[1], j : j + SIZE[0]] for i in range(3) for j in range(3)])
+        number = np.isfinite(block).sum(0)
+        means = np.where(number >= 5, np.nansum(block, 0) / np.maximum(number, 1), np.inf)
+        means.sort(axis=0)
+        count = np.isfinite(means).sum(0)
+        used = np.ceil(SHARE * count - 1e-9)
+        best = np.where(np.arange(len(poses))[:, None, None] < used, means, 0).sum(0) / np.maximum(used, 1)
+        volume[..., d] = np.where(count > 0, best, np.nan)
+    return volume
+
+
+@pytest.mark.parametrize("guided", [False, True])
+@pytest.mark.parametrize("count", [3, 8])
+def test_the_cost_of_a_plane(guided: bool, count: int) -> None:
+    """Every cost within two levels of plain code (whole numbers on the way), with and without the prior."""
+    made = signals(count, count + 1)
+    path = lateral_camera(count + 1, size=SIZE, way=0.8)
+    poses = [path[t] for t in range(1, count + 1)]
+    maps = geometry((path.K[0], path.R[0], path.T[0]), [(p.K, p.R, p.T) for p in poses])
+    prior = None
+    if guided:
+        prior = np.random.default_rng(5).uniform(0.08, 0.3, (count, SIZE[1], SIZE[0])).astype(np.float32)
+        prior[:, ::3] = 0
+    hidden = made[0, ..., 3].astype(np.uint8)
+    volume = sweep(made[0], hidden, made[1:], maps, PLANES, prior, 1.0).astype(float)
+    expected = plain_sweep(made[0], made[1:], poses, path[0], prior, 1.0)
+    seen = np.isfinite(expected) & (hidden == 0)[..., None]
+    assert seen.mean() > 0.5
+    off = np.abs(volume - expected)[seen]
+    # A place a hair from a pixel's border may round to the other side; the prior's curve is an approximation.
+    assert np.quantile(off, 0.97) < (6 if guided else 2)
+
+
+def test_the_network_sorts() -> None:
+    """Sorting by exchange: all patterns of nought and one, which is a proof."""
+    pairs = _network(8)
+    for pattern in range(256):
+        values = [(pattern >> i) & 1 for i in range(8)]
+        for i, j in pairs:
+            values[i], values[j] = min(values[i], values[j]), max(values[i], values[j])
+        assert values == sorted(values)
+
+
+def test_semiglobal_matching_against_plain_code() -> None:
+    """The plane chosen is the least of the sum over eight paths."""
+    random = np.random.default_rng(2)
+    volume = random.integers(0, 255, (14, 17, 11)).astype(np.uint8)
+    grey = random.integers(0, 255, (14, 17)).astype(np.uint8)
+    table = np.maximum(LARGE / (1 + np.arange(256) / SOFTENING), LEAST).round()
+    total = np.zeros(volume.shape)
+    for dy, dx in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+        path = np.zeros(volume.shape)
+        for y in range(14)[:: -1 if dy < 0 else 1]:
+            for x in range(17)[:: -1 if dx < 0 else 1]:
+                py, px = y - dy, x - dx
+                path[y, x] = volume[y, x]
+                if 0 <= py < 14 and 0 <= px < 17:
+                    before = path[py, px]
+                    aside = np.pad(before, 1, constant_values=1e9)
+                    large = table[abs(int(grey[y, x]) - int(grey[py, px]))]
+                    least = before.min()
+                    step = np.minimum(np.minimum(aside[:-2], aside[2:]) + SMALL, least + large)
+                    path[y, x] += np.minimum(before, step) - least
+        total += path
+    plane = semiglobal(volume, grey)
+    best = total.min(axis=2)
+    chosen = np.rint(plane).astype(int)
+    # The parabola moves by half a plane at most.
+    at = np.minimum.reduce([
+        np.take_along_axis(total, np.clip(chosen + s, 0, 10)[..., None], 2)[..., 0] for s in (-1, 0, 1)
+    ])  # fmt: skip
+    np.testing.assert_array_equal(at, best)
+
+
+def test_agreement_counts_the_frames_that_see_the_same(solved: object) -> None:
+    """Exact depths of other frames agree but where something hides the place; wrong ones do not."""
+    world = solved.world  # type: ignore[attr-defined]
+    exact = [(1 / world.depth(t)).astype(np.float32) for t in (4, 8, 12)]
+    poses = [world.cameras[t] for t in (4, 8, 12)]
+    both = agreeing(exact[1], poses[1], [exact[0], exact[2]], [poses[0], poses[2]], 0.004)
+    assert (both == 2).mean() > 0.85
+    assert (both >= 1).mean() > 0.97
+    none = agreeing(exact[1] * 1.1, poses[1], [exact[0], exact[2]], [poses[0], poses[2]], 0.004)
+    assert (none == 0).mean() > 0.85
+
+
+def test_consensus_takes_what_most_say() -> None:
+    """Two that agree outvote one that is nearer; of equal votes the nearer surface wins; nothing stays nothing."""
+    layers = np.array([[0.2, 0.2, 0.0], [0.2004, 0.3, 0.0], [0.5, 0.0, 0.0]], np.float32)[:, None]
+    best, support = consensus(layers, 0.001)
+    np.testing.assert_allclose(best[0], [0.2002, 0.3, 0.0], atol=1e-6)
+    np.testing.assert_array_equal(support[0], [2, 1, 0])
