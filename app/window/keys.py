@@ -65,7 +65,7 @@ COMMANDS = (
     Command("light", "Light or dark", (), "View"),
     Command("keys", "Keys", ("?",), "View"),
     Command("tool_select", "Select", ("V",), "Tools"),
-    Command("tool_lasso", "Lasso", (), "Tools"),
+    Command("tool_lasso", "Lasso", ("M",), "Tools"),
     Command("tool_point", "Point", ("P",), "Tools"),
     Command("tool_contact", "Contact", ("C",), "Tools"),
     Command("tool_pan", "Pan", ("H",), "Tools"),

@@ -8,9 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from app.model.document import Document
 from app.model.tracks import Track
+from app.model.values import KeyMask
 from app.window import theme
-from app.window.canvas import GhostPath, Overlay, PointCloudLayer, PolygonLayer, TrackLayer, TrackMark
+from app.window.canvas import GhostPath, Outline, OutlineLayer, Overlay, PointCloudLayer, TrackLayer, TrackMark
 from app.window.canvas.hits import GRAB, nearest_point
 from app.window.project import Project
 from app.window.reading import Reading
@@ -20,14 +22,22 @@ HIDDEN_STATES = {"occluded": "hidden", "outside": "outside", "": "missing"}
 
 @dataclass
 class Shown:
-    """What is drawn, and what is under way with the mouse."""
+    """What is drawn, and what is under way with the mouse.
+
+    mask_part : the part of this frame's mask that is selected (``video.mask_editing``); mask_moving the mask as it is
+        being dragged. subtracting : the line being drawn takes away.
+    """
 
     paths: bool = True
     masks: bool = True
     camera: bool = False
     names: bool = True
     marks: bool = True
+    onion: bool = False
     hovered: str = ""
+    mask_part: str = ""
+    mask_moving: KeyMask | None = None
+    subtracting: bool = False
     dragged: tuple[str, tuple[float, float]] | None = None
     drawing: tuple[tuple[float, float], ...] = ()
     before: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
@@ -78,14 +88,44 @@ def layers(project: Project, marks: tuple[TrackMark, ...], frame: int, shown: Sh
     return made
 
 
-def _masks(project: Project, frame: int, shown: Shown) -> PolygonLayer:
-    drawn = project.document.masks.get(frame) if shown.masks else None
-    outlines = tuple((np.array(lasso.points), not lasso.subtract) for lasso in drawn.lassos) if drawn else ()
-    if not outlines and shown.masks and project.document.masks:
+def _masks(project: Project, frame: int, shown: Shown) -> OutlineLayer:
+    document = project.document
+    made: list[Outline] = []
+    if shown.masks and shown.onion:
+        made += _neighbours(document, frame)
+    drawn = shown.mask_moving or document.masks.get(frame)
+    if shown.masks and drawn is not None:
+        kind, lasso, index = _part(shown.mask_part)
+        for number, each in enumerate(drawn.lassos):
+            lit = number == lasso
+            active = index + (kind == "edge" and shown.mask_moving is not None) if lit and kind != "lasso" else -1
+            if kind == "edge" and shown.mask_moving is None:
+                active = -1
+            made.append(Outline(np.array(each.points), "subtract" if each.subtract else "add", active, lit))
+    elif shown.masks and document.masks:
         masks = project.result(project.session.stages.masks)
         if masks is not None:
-            outlines = tuple((points, False) for points in outline(masks[frame]))
-    return PolygonLayer(outlines, shown.drawing)
+            made += [Outline(points, "between") for points in outline(masks[frame])]
+    return OutlineLayer(tuple(made), shown.drawing, shown.subtracting)
+
+
+def _part(name: str) -> tuple[str, int, int]:
+    """Kind, lasso and corner of a part of a mask; -1 where there is none."""
+    kind, *numbers = name.split("/")
+    lasso, index, *_ = (*(int(number) for number in numbers), -1, -1)
+    return kind, lasso, index
+
+
+def _neighbours(document: Document, frame: int) -> list[Outline]:
+    """The key masks before and after a frame."""
+    before = max((key for key in document.masks if key < frame), default=None)
+    after = min((key for key in document.masks if key > frame), default=None)
+    found: list[Outline] = []
+    for key, kind in ((before, "before"), (after, "after")):
+        if key is not None:
+            lassos = document.masks[key].lassos
+            found += [Outline(np.array(lasso.points), kind) for lasso in lassos]  # type: ignore[arg-type]
+    return found
 
 
 def outline(mask: NDArray[np.bool_]) -> list[NDArray[np.float64]]:

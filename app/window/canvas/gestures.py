@@ -46,9 +46,10 @@ class Chosen:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A line is being drawn."""
+    """A line is being drawn; it will take away where ``subtracting``."""
 
     points: tuple[Place, ...]
+    subtracting: bool = False
 
 
 @dataclass(frozen=True)
@@ -163,14 +164,14 @@ class LassoGesture:
     def press(self, place: Place) -> Event | None:
         """Begin the line."""
         self._points = [place]
-        return Drawing(tuple(self._points))
+        return Drawing(tuple(self._points), self.mode == "subtract")
 
     def move(self, place: Place) -> Event | None:
         """Add a corner where the mouse went far enough."""
         if not self._points or math.dist(place, self._points[-1]) < self.spacing:
             return None
         self._points.append(place)
-        return Drawing(tuple(self._points))
+        return Drawing(tuple(self._points), self.mode == "subtract")
 
     def release(self, place: Place) -> Event | None:
         """Close the line; a line around nothing is given up."""

@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QPolygonF
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen
 
 from app.window import theme
 from app.window.canvas import marks
@@ -132,33 +132,6 @@ def _line(points: NDArray[np.float64]) -> QPainterPath:
             path.moveTo(x, y)
             down = True
     return path
-
-
-@dataclass(frozen=True)
-class PolygonLayer:
-    """Outlines: those the user drew solid with corners, those in between dashed."""
-
-    outlines: tuple[tuple[NDArray[np.float64], bool], ...] = ()
-    drawing: tuple[tuple[float, float], ...] = ()
-    title: str = ""
-
-    def paint(self, painter: QPainter, view: View, size: tuple[int, int]) -> None:
-        """Draw the outlines and the one being drawn."""
-        white = QColor(255, 255, 255, 235)
-        for points, drawn in self.outlines:
-            placed = view.to_widget(points)
-            closed = QPolygonF(marks.polygon(placed))
-            if len(placed):
-                closed.append(closed.first())
-            marks.stroke(painter, closed, white, 1.6, not drawn)
-            if drawn and len(placed) < 80:
-                painter.setPen(QPen(marks.UNDERLAY, 1))
-                painter.setBrush(white)
-                for x, y in placed:
-                    painter.drawRect(QRectF(x - 2.5, y - 2.5, 5, 5))
-        if self.drawing:
-            line = marks.polygon(view.to_widget(np.array(self.drawing)))
-            marks.stroke(painter, line, theme.active().colour("accent"), 1.8)
 
 
 @dataclass(frozen=True)

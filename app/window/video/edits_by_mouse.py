@@ -7,6 +7,7 @@ from app.model.edits import contacts, scene, tracks
 from app.window.picture_layers import Shown
 from app.window.project import Project
 from app.window.reading import Reading
+from app.window.video import mask_editing
 
 Place = tuple[float, float]
 
@@ -34,8 +35,12 @@ def nudge(project: Project, reading: Reading | None, frame: int, dx: float, dy: 
         project.edit(tracks.set_click, track.id, frame, place, gesture=f"nudge {track.id} {frame}")
 
 
-def draw_mask(project: Project, frame: int, points: tuple[Place, ...], mode: str) -> None:
-    """Add a lasso to the mask of a frame, take one away from it, or begin it anew: one entry."""
+def draw_mask(project: Project, frame: int, points: tuple[Place, ...], mode: str, scale: float) -> None:
+    """Add a lasso to the mask of a frame, take one away from it, or begin it anew: one entry.
+
+    The line keeps the corners it needs within 1.5 pixels of the screen at this scale, so that it can be edited.
+    """
+    points = mask_editing.simplified(points, 1.5 / scale)
     gesture = f"lasso {id(points)}"
     if mode == "new" and frame in project.document.masks:
         project.edit(scene.remove_mask, frame, gesture=gesture)
@@ -57,8 +62,16 @@ def mark_contact(
     return (track_id, frame), f"Contact of {track.name} begins at frame {frame}: click it in the last such frame."
 
 
-def delete(project: Project, frame: int) -> None:
-    """Delete the click of this frame, or the track where it has no other."""
+def move_mask_part(project: Project, frame: int, part: str, place: Place, start: Place) -> None:
+    """Put a corner, an edge or the whole of a lasso somewhere."""
+    project.edit(mask_editing.moved, frame, part, place, start)
+
+
+def delete(project: Project, frame: int, part: str = "") -> None:
+    """Delete the selected part of a mask, else the click of this frame, or the track where it has no other."""
+    if part and frame in project.document.masks:
+        project.edit(mask_editing.removed, frame, part)
+        return
     track = next((each for each in project.document.tracks if each.id == project.track_id), None)
     if track is None:
         if frame in project.document.masks:

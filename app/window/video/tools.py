@@ -4,21 +4,23 @@ from __future__ import annotations
 
 from typing import Literal
 
+from app.model.values import KeyMask
 from app.window.canvas import TrackMark
 from app.window.canvas.gestures import DragGesture, Gesture, LassoGesture, PlaceGesture
 from app.window.picture_layers import track_at
+from app.window.video import mask_editing
 
 Tool = Literal["select", "lasso", "point", "contact", "pan"]
 TOOLS: tuple[tuple[Tool, str, str], ...] = (
     ("select", "Select", "V"),
-    ("lasso", "Lasso", ""),
+    ("lasso", "Lasso", "M"),
     ("point", "Point", "P"),
     ("contact", "Contact", "C"),
     ("pan", "Pan", "H"),
 )
 HINTS: dict[str, str] = {
-    "select": "Drag a point to where it belongs: the frames around are solved again. Wheel zooms, middle button pans.",
-    "lasso": "Draw round the subject, roughly. Shift adds to the mask of this frame, Alt takes away from it.",
+    "select": "Drag a point, or a mask's corner, edge or inside, to where it belongs. Wheel zooms, middle button pans.",
+    "lasso": "Draw round the subject, roughly. Shift adds, Alt takes away; corners and edges can be pulled.",
     "point": "Click a place on the subject that can be recognised: it is followed through the clip.",
     "contact": "Click a point where it begins to stand on the ground, then click it again in the last such frame.",
     "pan": "Drag to move the picture.",
@@ -34,11 +36,15 @@ def gesture_for(
     *,
     adding: bool,
     subtracting: bool,
+    key: KeyMask | None = None,
 ) -> Gesture | None:
-    """The gesture that a press at a place starts with a tool."""
+    """The gesture that a press at a place starts with a tool; ``key`` is the mask drawn in this frame, if seen."""
     if tool == "pan":
         return None
+    part = mask_editing.part_at(key, place, scale, whole=tool == "select")
     if tool == "lasso":
+        if part and key is not None and not (adding or subtracting):
+            return mask_editing.drag_of(key, part, place, scale)
         return LassoGesture("subtract" if subtracting else "add" if adding else "new", 3.0 / scale, 60.0 / scale)
     track = track_at(marks, frame, place, scale)
     mark = next((each for each in marks if each.name == track), None)
@@ -46,6 +52,8 @@ def gesture_for(
         origin = mark.at(frame) or place
         slack = 1e9 if tool == "contact" else 2.5 / scale
         return DragGesture(track, origin, slack)
+    if tool == "select" and part and key is not None:
+        return mask_editing.drag_of(key, part, place, scale)
     if tool == "point":
         return PlaceGesture(6.0 / scale)
     return DragGesture("", place, 1e9)

@@ -9,6 +9,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.model.document import Document
+from app.model.values import KeyMask
 from app.window.canvas import Canvas
 from app.window.canvas.gestures import Cancelled, Chosen, Drawing, Drawn, Gesture, Moved, Moving, Placed
 from app.window.controls import ErrorBar, Panel, icon_button, label, toggle, tool
@@ -19,6 +20,7 @@ from app.window.project import Project
 from app.window.reading import Reading
 from app.window.video import edits_by_mouse
 from app.window.video.inspector import TrackInspector
+from app.window.video.mask_editing import is_part, moved
 from app.window.video.point_windows import PointWindows, Window, window_frames
 from app.window.video.steps import StepList, steps
 from app.window.video.tools import HINTS, TOOLS, Tool, gesture_for
@@ -71,6 +73,7 @@ class VideoWorkspace(QWidget):
         bar = self.panel.header.row
         self.paths_button = toggle("paths", "Paths", lambda on: self._switch("paths", on), on=True)
         self.masks_button = toggle("masks", "Masks", lambda on: self._switch("masks", on), on=True)
+        self.onion_button = toggle("onion", "Onion skin", lambda on: self._switch("onion", on))
         self.names_button = toggle("labels", "Names", lambda on: self._switch("names", on))
         self.camera_button = toggle("camera", "Camera", lambda on: self._switch("camera", on))
         self.magnifier_button = toggle("magnifier", "Magnifier", self._magnify, key="Z")
@@ -81,6 +84,7 @@ class VideoWorkspace(QWidget):
         for widget in (
             self.paths_button,
             self.masks_button,
+            self.onion_button,
             self.names_button,
             self.camera_button,
             self.magnifier_button,
@@ -140,6 +144,8 @@ class VideoWorkspace(QWidget):
 
     def show_picture(self, frame: int, picture: QImage) -> None:
         """Show a frame; picture and marks change together, so that they never belong to different frames."""
+        if frame != self.frame:
+            self.shown.mask_part = ""
         self.frame = frame
         self.canvas.show_picture(picture)
         self.refresh()
@@ -148,6 +154,8 @@ class VideoWorkspace(QWidget):
         """Keep the old paths of tracks that have to be solved again, then show what there is."""
         if self.reading is not None:
             edits_by_mouse.keep_old_paths(self.shown, self.reading, before, after)
+        if before.masks is not after.masks:
+            self.shown.mask_part = ""
         self.refresh()
 
     def showEvent(self, event: object) -> None:
@@ -229,7 +237,13 @@ class VideoWorkspace(QWidget):
             self.canvas.view.scale,
             adding=bool(keys & Qt.KeyboardModifier.ShiftModifier),
             subtracting=bool(keys & Qt.KeyboardModifier.AltModifier),
+            key=self._mask(),
         )
+
+    def _mask(self) -> KeyMask | None:
+        """The mask drawn in this frame, where masks are seen."""
+        seen = self.project is not None and self.shown.masks and self.shown.marks
+        return self.project.document.masks.get(self.frame) if self.project is not None and seen else None
 
     def _hovered(self, place: tuple[float, float] | None) -> None:
         found = track_at(self._marks, self.frame, place, self.canvas.view.scale) if place is not None else ""
@@ -242,26 +256,45 @@ class VideoWorkspace(QWidget):
             return
         if isinstance(event, Drawing):
             self.shown.drawing = event.points
+            self.shown.subtracting = event.subtracting
+        elif isinstance(event, Moving) and is_part(event.owner):
+            self.shown.mask_part = event.owner
+            self._move_mask(event)
         elif isinstance(event, Moving):
             self.shown.dragged = (event.owner, event.place)
             self.project.select_track(event.owner)
             self.hint.emit("Let go to correct the point here; Esc puts it back.")
         else:
-            self.shown.dragged, self.shown.drawing = None, ()
+            self.shown.dragged, self.shown.drawing, self.shown.mask_moving = None, (), None
             self._decided(event)
         self.refresh()
+
+    def _move_mask(self, event: Moving) -> None:
+        """Show the mask as it would be if the mouse were let go now."""
+        assert self.project is not None
+        edit = moved(self.project.document, self.frame, event.owner, event.place, event.start)
+        self.shown.mask_moving = edit.document.masks[self.frame]
 
     def _decided(self, event: object) -> None:
         project, frame = self.project, self.frame
         assert project is not None
-        if isinstance(event, Moved):
+        if isinstance(event, Moved) and is_part(event.owner):
+            edits_by_mouse.move_mask_part(project, frame, event.owner, event.place, event.start)
+            self.shown.mask_part = ""
+        elif isinstance(event, Moved):
             project.select_track(event.owner)
             edits_by_mouse.correct(project, event.owner, frame, event.place)
         elif isinstance(event, Placed):
             edits_by_mouse.add_point(project, frame, event.place)
         elif isinstance(event, Drawn):
-            edits_by_mouse.draw_mask(project, frame, event.points, event.mode)
+            edits_by_mouse.draw_mask(project, frame, event.points, event.mode, self.canvas.view.scale)
+        elif isinstance(event, Chosen) and is_part(event.owner):
+            project.select_track("")
+            self.shown.mask_part = event.owner
+            self.hint.emit("Delete removes the chosen corner, or the whole lasso where its edge or inside is chosen.")
+            return
         elif isinstance(event, Chosen):
+            self.shown.mask_part = ""
             project.select_track(event.owner)
             if self.tool == "contact" and event.owner:
                 self.contact_start, sentence = edits_by_mouse.mark_contact(
@@ -299,7 +332,7 @@ class VideoWorkspace(QWidget):
             "fit": self.canvas.fit,
             "magnifier": self.magnifier_button.toggle,
             "overlay": lambda: self._switch("marks", not self.shown.marks),
-            "delete": lambda: edits_by_mouse.delete(project, frame),
+            "delete": lambda: edits_by_mouse.delete(project, frame, self.shown.mask_part),
             "next_track": project.select_next_track,
             "nudge_left": lambda: nudge(project, self.reading, frame, -0.25, 0.0),
             "nudge_right": lambda: nudge(project, self.reading, frame, 0.25, 0.0),
