@@ -212,7 +212,10 @@ def _with_copied_media(document: Document, source: ProjectFolder, target: Projec
     if clip is not None:
         document = attrs.evolve(document, clip=attrs.evolve(clip, media=copied(clip.media)))
     characters = tuple(attrs.evolve(each, mesh=copied(each.mesh)) for each in document.characters)
+    sequences = tuple(
+        each if each.media is None else attrs.evolve(each, media=copied(each.media)) for each in document.sequences
+    )
     camera = document.camera
     if camera.file is not None:
         camera = attrs.evolve(camera, file=copied(camera.file))
-    return attrs.evolve(document, characters=characters, camera=camera)
+    return attrs.evolve(document, characters=characters, sequences=sequences, camera=camera)

@@ -10,6 +10,10 @@ from pathlib import Path
 import click
 
 from app.actions.films import render_film
+from app.actions.performing_export import export_performance
+from app.actions.performing_films import film_performance
+from app.actions.performing_path import write_path
+from app.actions.performing_sample import add_sample_performance, choose_sample_keys
 from app.actions.results import export_animation
 from app.actions.sample import fill_with_sample
 from app.actions.session import Session
@@ -22,7 +26,10 @@ from app.commands.project import PATH
 @click.option("--fresh", is_flag=True, help="Compute everything again instead of going on where the last run ended.")
 @click.pass_obj
 def demo(console: Console, folder: Path, fresh: bool) -> None:
-    """Let the sample's filmed hound move two characters; writes a project, films and meshes into FOLDER (out)."""
+    """Let the sample's filmed hound move two characters, and join its walk with other takes into a performance.
+
+    Writes a project, films and meshes into FOLDER (out).
+    """
     started = time.monotonic()
     place = folder / "sample.motionwright"
     if fresh:
@@ -46,6 +53,7 @@ def demo(console: Console, folder: Path, fresh: bool) -> None:
                 session, characters[0].id, folder / f"{characters[0].name}_frames", form="ply", progress=bar
             )
         made.append(str(folder / f"{characters[0].name}_frames"))
+        made += _perform(console, session, folder)
     seconds = time.monotonic() - started
     lines = [
         f"Done in {seconds:.0f} s. Look at:",
@@ -53,6 +61,24 @@ def demo(console: Console, folder: Path, fresh: bool) -> None:
         "Open the project in the window with: motionwright gui " + made[0],
     ]
     console.answer({"files": made, "seconds": seconds}, lines)
+
+
+def _perform(console: Console, session: Session, folder: Path) -> list[str]:
+    """Compose a performance of the filmed walk and further takes of the hound; gives the files."""
+    if not session.document.sequences:
+        with console.progress("Capturing further takes") as bar:
+            add_sample_performance(session, folder, progress=bar)
+        console.compute(session, "Analysing the takes", (session.stages.graph,))
+        choose_sample_keys(session)
+        session.save()
+    console.compute(session, "Composing the performance", (session.stages.performance, session.stages.blends))
+    film, meshes, path = folder / "performance.mp4", folder / "performance.npz", folder / "path.json"
+    with console.progress(f"Rendering {film.name}") as bar:
+        film_performance(session, film, view=70.0, size=(640, 360), marks=True, progress=bar)
+    with console.progress(f"Writing {meshes.name}") as bar:
+        export_performance(session, meshes, progress=bar)
+    write_path(session, path)
+    return [str(film), str(meshes), str(path)]
 
 
 def _session(place: Path) -> Session:

@@ -44,7 +44,7 @@ def _turn(axis, angle):  # type: ignore[no-untyped-def]  # pragma: no cover - co
 
 
 @njit(cache=True, nogil=True)
-def body_joints(pose):
+def body_joints(pose):  # type: ignore[no-untyped-def]
     """Joints of one pose.
 
     Parameters
@@ -84,7 +84,7 @@ def body_joints(pose):
 
 
 @njit(cache=True, nogil=True)
-def body_capsules(joints):
+def body_capsules(joints):  # type: ignore[no-untyped-def]
     """Tapered capsules around joints in any frame of reference (they follow the joints alone).
 
     Returns
