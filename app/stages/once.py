@@ -25,7 +25,7 @@ def once(make: Callable[Concatenate[Document, Parts], Made]) -> Callable[Concate
     """
 
     @functools.wraps(make)
-    def kept(document: Document, *parts: Parts.args, **named: Parts.kwargs) -> Made:
+    def kept(document: Document, /, *parts: Parts.args, **named: Parts.kwargs) -> Made:
         room = _room(document)
         # Parts live as long as their document does, so their identity is theirs alone; names are compared as such.
         key = (make, *(part if isinstance(part, str) else id(part) for part in (*parts, *named.values())))

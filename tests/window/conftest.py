@@ -11,7 +11,7 @@ from pathlib import Path
 
 import hypothesis
 import pytest
-from PySide6.QtCore import QPoint, QPointF, Qt, QTimer, qInstallMessageHandler
+from PySide6.QtCore import QEventLoop, QPoint, QPointF, Qt, QTimer, qInstallMessageHandler
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
@@ -125,12 +125,14 @@ def wait_for(ready: Callable[[], object], seconds: float = 20.0) -> None:
     end = time.monotonic() + seconds
     while not ready():
         assert time.monotonic() < end, "what was waited for did not come"
-        QTest.qWait(5)
+        settle(5)
 
 
 def settle(milliseconds: int = 30) -> None:
-    """Let the window live for a moment."""
-    QTest.qWait(milliseconds)
+    """Let the window live for a moment, and the other threads with it: ``QTest.qWait`` holds the interpreter's lock."""
+    loop = QEventLoop()
+    QTimer.singleShot(milliseconds, loop.quit)
+    loop.exec()
 
 
 def at(x: float, y: float) -> QPoint:
@@ -156,7 +158,7 @@ def drag(
         place = at(start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
         _move(widget, place, button, keys)
         if pause:
-            QTest.qWait(pause)
+            settle(pause)
     if release:
         QTest.mouseRelease(widget, button, keys, at(*end))
 

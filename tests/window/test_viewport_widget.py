@@ -137,6 +137,17 @@ def test_edges_are_smooth_at_rest(view: Viewport) -> None:
     assert view.host.renders == count, "nothing may be drawn while nothing changes"
 
 
+def test_the_fine_picture_waits_for_the_end_of_work(view: Viewport) -> None:
+    """While something is computed nothing is drawn beyond what changes; afterwards the fine picture comes."""
+    busy = True
+    view.calm = lambda: not busy
+    view.move_mesh(view.vertices)
+    settle(400)
+    assert view.host._size[0] == view.width()
+    busy = False
+    wait_for(lambda: view.host._size[0] == 2 * view.width(), 3)
+
+
 def test_empty_space_turns_and_the_wheel_goes_closer(view: Viewport) -> None:
     """A drag beside the mesh turns the orbit; Shift moves the target."""
     before = view.orbit

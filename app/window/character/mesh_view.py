@@ -44,6 +44,7 @@ class MeshView(Panel):
         self._calls = BackgroundCalls(self)
         self._loading = False
         self.ghosts: Callable[[], Sequence[tuple[int, NDArray[np.float64]]]] = tuple
+        self.calm: Callable[[], bool] = lambda: True
         self._mesh: tuple[int, int] = (0, 0)
         self._ground: tuple[float, ...] = ()
         self._faced = False
@@ -105,6 +106,7 @@ class MeshView(Panel):
             self._inner.addWidget(self.viewport)
             self.viewport.happened.connect(self.happened)
             self.viewport.notes = (self._paint_ghosts,)
+            self.viewport.calm = lambda: self.calm()
             self.notes = PictureNotes(self.viewport)
             self.notes.raise_()
             self.made.emit()

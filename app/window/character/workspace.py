@@ -50,6 +50,7 @@ class CharacterWorkspace(QWidget):
         self.mesh.ghosts = self._ghosts
         self.mesh.happened.connect(self._happened)
         self.mesh.loaded.connect(self.refresh)
+        self.mesh.calm = lambda: self.project is None or not self.project.progress
         self.tracks.pairing.connect(lambda _: self._say())
         self.inspector = CharacterInspector()
         side = Panel()

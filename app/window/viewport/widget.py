@@ -66,6 +66,7 @@ class Viewport(QWidget):
         self.faces: NDArray[np.int32] = np.zeros((0, 3), np.int32)
         self.handles: tuple[Handle, ...] = ()
         self.notes: Sequence[Callable[[QPainter, Lens], None]] = ()
+        self.calm: Callable[[], bool] = lambda: True
         self._hover = -1
         self._drag: VertexDrag | None = None
         self._turn: tuple[QPointF, bool] | None = None
@@ -188,6 +189,10 @@ class Viewport(QWidget):
             self._idle.start()
 
     def _refine(self) -> None:
+        if not self.calm():
+            # The fine picture takes several times as long: it waits for the end of the work under way.
+            self._idle.start()
+            return
         if self.isVisible() and not self._dirty and self._drag is None and self._turn is None:
             self._draw(fine=True)
             self.update()

@@ -1,0 +1,69 @@
+"""Opening and closing leaves nothing behind, however often."""
+
+from __future__ import annotations
+
+import gc
+import threading
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QEvent, QObject, QTimer
+from PySide6.QtWidgets import QApplication
+
+from app.actions.session import Session
+from app.window.shell import Shell
+from app.window.viewport import Viewport
+from tests.window.conftest import settle, wait_for
+
+pytestmark = [pytest.mark.window, pytest.mark.slow, pytest.mark.xdist_group("window")]
+ROUNDS, WARM = 10, 3
+
+
+def alive() -> Counter[str]:
+    """Threads, Qt objects and render windows that Python knows of."""
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
+
+    for _ in range(3):
+        QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+        QApplication.processEvents()
+        gc.collect()
+    found: Counter[str] = Counter(threads=threading.active_count())
+    for each in gc.get_objects():
+        try:
+            kind = type(each)
+            if issubclass(kind, vtkRenderWindow):
+                found["render windows"] += 1
+            elif issubclass(kind, Shell | Viewport | QTimer | Session):
+                found[kind.__name__] += 1
+            elif issubclass(kind, QObject):
+                found["Qt objects"] += 1
+        except ReferenceError:
+            continue
+    return found
+
+
+def test_ten_windows_leave_nothing(session: Session, qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each shows the video, then the character in 3D, and is closed: from the third on nothing is more than before."""
+    monkeypatch.setattr("app.window.files.ask_unsaved", lambda *_: "discard")
+    place: Path = session.folder.path
+    session.close()
+    del session
+    counts: list[Counter[str]] = []
+    for _ in range(ROUNDS):
+        shell = Shell(Session.open(place), viewport="raster")
+        shell.resize(1200, 760)
+        shell.show()
+        wait_for(lambda shell=shell: not shell.video.canvas.picture.isNull())
+        shell.do("character")
+        wait_for(lambda shell=shell: shell.character.mesh.viewport and len(shell.character.mesh.viewport.vertices))
+        settle(20)
+        shell.close()
+        shell.deleteLater()
+        del shell
+        counts.append(alive())
+    after = counts[WARM:]
+    assert all(count["Shell"] <= 1 and count["render windows"] <= 1 for count in after), counts
+    for name in set().union(*after):
+        values = [count[name] for count in after]
+        assert values[-1] <= values[0], f"{name} grow: {values}"
