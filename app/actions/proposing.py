@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -82,3 +82,33 @@ def accept_contacts(session: Session, track_id: str, spans: list[Interval]) -> N
     if spans:
         count = f"{len(spans)} contacts" if len(spans) > 1 else "a contact"
         session.apply(Edit(document, f"Accept {count} of {track.name}", spans[0].first))
+
+
+def accept_all(session: Session, proposals: Mapping[str, Sequence[Interval]]) -> int:
+    """Accept the proposed contacts of several tracks as one entry of the history; gives how many."""
+    document, count, first = session.document, 0, None
+    for track_id, spans in proposals.items():
+        for span in spans:
+            if not contacts.marked(document.track(track_id), span):
+                document = contacts.add_contact(document, track_id, span.first, span.last, accepted=True).document
+                count, first = count + 1, span.first if first is None else min(first, span.first)
+    if count:
+        session.apply(Edit(document, f"Accept {count} contacts" if count > 1 else "Accept a contact", first))
+    return count
+
+
+def click_wanted(session: Session, track_id: str = "") -> tuple[str, int] | None:
+    """The track and the frame whose click would help most, of one track or of all; None where nothing is open.
+
+    Only tracks that have been computed count.
+    """
+    from imitation.tracking import rank_tracks, suggest_correction
+
+    tracks = [track for track in session.document.tracks if track_id in ("", track.id)]
+    found = {track.id: session.ready(session.stages.track(track.id)) for track in tracks}
+    known = {name: track for name, track in found.items() if track is not None}
+    for name in rank_tracks(known):  # type: ignore[arg-type]
+        frame = suggest_correction(known[name])  # type: ignore[arg-type]
+        if frame is not None:
+            return name, frame
+    return None

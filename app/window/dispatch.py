@@ -30,9 +30,11 @@ class Dispatch:
     def do(self, name: str) -> None:
         """Do a command."""
         shell = self.shell
+        if name == "cancel" and shell.timeline.lanes.cancel():
+            return
         if shell.stack.currentWidget() is not shell.welcome and shell.in_sight().command(name):
             return
-        if shell.navigator.command(name) or shell.files.command(name):
+        if shell.navigator.command(name) or shell.timeline.command(name) or shell.files.command(name):
             return
         handler = self._handlers().get(name)
         if handler is not None:
@@ -51,7 +53,6 @@ class Dispatch:
             "propagate": keeper.run_missing,
             "video": lambda: shell.show_workspace("video"),
             "character": lambda: shell.show_workspace("character"),
-            "fit_time": shell.timeline.lanes.show_all,
             "light": self.switch_look,
             "keys": lambda: KeySheet(shell).show(),
         }

@@ -2,18 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.model.character import Character
+from app.model.edits import contacts
 from app.model.tracks import Track
+from app.model.values import Interval
 from app.stages.stage import Stage
 from app.window.project import Project
-from app.window.timeline import Bar, Diamond, Lane, Row
+from app.window.timeline import Bar, Curve, Diamond, Lane, Row
 
 DOUBT = 0.5
+FAR_OFF = 1.0
+"""Pixels of reprojection error above which a frame's camera deserves a look."""
+Proposals = Mapping[str, Sequence[Interval]]
+_CURVES: WeakKeyDictionary[Project, Curve] = WeakKeyDictionary()
 STATE_COLOURS = {"fresh": "ok", "running": "accent", "stale": "warn", "failed": "err", "missing": "line2"}
 VIDEO_LEGEND = (
     ("click, mask", "text", "diamond"),
@@ -21,6 +29,7 @@ VIDEO_LEGEND = (
     ("waiting", "warn", "bar"),
     ("low confidence", "text2", "hatch"),
     ("contact", "contact", "bar"),
+    ("proposed", "contact", "hatch"),
 )
 CHARACTER_LEGEND = (
     ("pose edit", "edit", "diamond"),
@@ -31,9 +40,11 @@ CHARACTER_LEGEND = (
 )
 
 
-def video_lanes(project: Project) -> list[Lane]:
-    """Pictures and masks, tracks, contacts."""
-    return [_pictures(project), _tracks(project, 8), _contacts(project)]
+def video_lanes(project: Project, proposals: Proposals | None = None) -> list[Lane]:
+    """Pictures and masks, tracks, contacts with those proposed, and how well the cameras fit."""
+    lanes = [_pictures(project), _tracks(project, 8), _contacts(project, proposals or {})]
+    fit = _reprojection(project)
+    return lanes if fit is None else [*lanes, fit]
 
 
 def character_lanes(project: Project, solved: NDArray[np.bool_] | None) -> list[Lane]:
@@ -50,7 +61,7 @@ def _pictures(project: Project) -> Lane:
     last = max(project.frame_count - 1, 0)
     row = Row("masks", (Bar(0, last, "line2", "line"),) if masks else (), masks)
     title = f"Video, {len(masks)} mask{'s' if len(masks) != 1 else ''}" if masks else "Video"
-    return Lane("video", title, "video", (row,) if masks else (), 12, 1, thumbnails=True)
+    return Lane("video", title, "video", (row,) if masks else (), 12, 1, thumbnails=True, edits=("retime",))
 
 
 def _tracks(project: Project, shown: int) -> Lane:
@@ -102,13 +113,36 @@ def span_bars(span: Any, colour: str) -> list[Bar]:
     ]
 
 
-def _contacts(project: Project) -> Lane:
-    rows = []
+def _contacts(project: Project, proposals: Proposals | None = None) -> Lane:
+    rows, count = [], 0
     for track in project.document.tracks:
-        if track.contacts:
+        open_ = [span for span in (proposals or {}).get(track.id, ()) if not contacts.marked(track, span)]
+        chosen = track.id == project.track_id
+        if track.contacts or open_ or chosen:
             bars = tuple(Bar(each.span.first, each.span.last, "contact") for each in track.contacts)
-            rows.append(Row(track.id, bars))
-    return Lane("contacts", f"Contacts, {sum(len(row.bars) for row in rows)}", "contact", tuple(rows), 8, 6)
+            offered = tuple(Bar(span.first, span.last, "contact", "hatch") for span in open_)
+            rows.append(Row(track.id, bars + offered, selected=chosen))
+            count += len(bars)
+    return Lane("contacts", f"Contacts, {count}", "contact", tuple(rows), 9, 6, edits=("paint", "trim"))
+
+
+def _reprojection(project: Project) -> Lane | None:
+    """How far the recovered points are from where they were seen, a frame; None where nothing is known."""
+    path = project.result(project.session.stages.cameras)
+    if path is None or not np.isfinite(path.residuals).any():
+        return None
+    kept = _CURVES.get(project)
+    if kept is None or kept.values is not path.residuals:
+        kept = _CURVES[project] = Curve(path.residuals, FAR_OFF)
+    worst = float(np.nanmax(path.residuals))
+    return Lane("reprojection", f"Reprojection, {worst:.1f} px", "reprojection", curve=kept)
+
+
+def worst_near(residuals: NDArray[np.float64], frame: int, reach: int) -> int:
+    """The frame of the largest residual (n,) within ``reach`` frames; the frame itself where none is known."""
+    first = max(frame - reach, 0)
+    near = residuals[first : frame + reach + 1]
+    return first + int(np.nanargmax(near)) if np.isfinite(near).any() else frame
 
 
 def _poses(project: Project, character: Character) -> Lane:

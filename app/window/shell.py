@@ -97,7 +97,7 @@ class Shell(QMainWindow):
         for workspace in (self.video, self.character):
             workspace.hint.connect(self._hint)
             workspace.run_wanted.connect(lambda: self.do("propagate"))
-        self.character.lanes_changed.connect(lambda: self._lanes.isActive() or self._lanes.start())
+            workspace.lanes_changed.connect(lambda: self._lanes.isActive() or self._lanes.start())
         self.character.inspector.go.connect(self.navigator.go)
         self.character.inspector.on_release.connect(self._propagate_on_release)
         self.navigator.playback.playing_changed.connect(self.timeline.transport.show_playing)
@@ -200,7 +200,7 @@ class Shell(QMainWindow):
         if project is None:
             return
         if self.workspace == "video":
-            lanes = video_lanes(project)
+            lanes = video_lanes(project, self.video.proposals.open(project))
         else:
             lanes = character_lanes(project, self.character.motion.solved(project.frame_count))
         self.timeline.show_lanes(lanes, self.workspace)

@@ -37,6 +37,31 @@ def add_contact(
     return Edit(_with(document, track, kept), f"{verb} {track.name}, frames {span.first}-{span.last}", span.first)
 
 
+def marked(track: Track, span: Interval) -> bool:
+    """Whether some of these frames are marked as a contact already."""
+    return any(contact.span.overlaps(span) for contact in track.contacts)
+
+
+def toggle_contact(document: Document, track_id: str, frame: int) -> Edit:
+    """Mark one frame as a contact, joined to the contacts beside it; or take one frame out of its contact."""
+    track = document.track(track_id)
+    span = checked_interval(document, frame, frame)
+    here = next((contact for contact in track.contacts if frame in contact.span), None)
+    if here is None:
+        beside = [c for c in track.contacts if frame in (c.span.first - 1, c.span.last + 1)]
+        kept = [contact for contact in track.contacts if contact not in beside]
+        first = min([span.first, *(c.span.first for c in beside)])
+        last = max([span.last, *(c.span.last for c in beside)])
+        place = next((contact.place for contact in beside if contact.place is not None), None)
+        kept.append(Contact(Interval(first, last), place))
+        return Edit(_with(document, track, kept), f"Mark contact of {track.name}, frame {frame}", frame)
+    kept = [contact for contact in track.contacts if contact is not here]
+    for first, last in ((here.span.first, frame - 1), (frame + 1, here.span.last)):
+        if first <= last:
+            kept.append(attrs.evolve(here, span=Interval(first, last)))
+    return Edit(_with(document, track, kept), f"No contact of {track.name}, frame {frame}", frame)
+
+
 def trim_contact(document: Document, track_id: str, frame: int, first: int, last: int) -> Edit:
     """Give the contact that holds ``frame`` other ends."""
     track = document.track(track_id)

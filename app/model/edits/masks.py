@@ -8,7 +8,7 @@ from collections.abc import Callable
 import attrs
 
 from app.model.document import Document
-from app.model.edits.edit import Edit
+from app.model.edits.edit import Edit, checked_frame
 from app.model.values import KeyMask, Lasso, ModelError, Point2
 
 
@@ -55,6 +55,17 @@ def remove_lasso(document: Document, frame: int, lasso: int) -> Edit:
     else:
         masks = document.masks.without(frame)
     return Edit(attrs.evolve(document, masks=masks), f"Remove the lasso, frame {frame}", frame)
+
+
+def retime_mask(document: Document, frame: int, to: int) -> Edit:
+    """Move the key mask of a frame to another frame that has none."""
+    if frame not in document.masks:
+        raise ModelError(f"There is no mask drawn in frame {frame}.")
+    to = checked_frame(document, to)
+    if to in document.masks:
+        raise ModelError(f"Frame {to} has a mask already: remove one of the two.")
+    masks = document.masks.without(frame).with_item(to, document.masks[frame])
+    return Edit(attrs.evolve(document, masks=masks), f"Move the mask from frame {frame} to {to}", to)
 
 
 def _changed(document: Document, frame: int, lasso: int, change: Callable[[Lasso], Lasso], verb: str) -> Edit:

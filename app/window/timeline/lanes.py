@@ -13,6 +13,8 @@ from app.window.timeline.axis import LABELS, Axis
 
 RULER = 26
 LOW, TALLER = 14, 5
+HANDLE, TRIM = 9, 4
+"""Pixels within which a handle of the range and the end of a bar are taken hold of."""
 Style = Literal["solid", "dim", "hatch", "line"]
 
 
@@ -57,7 +59,10 @@ class Curve:
 
 @dataclass(frozen=True)
 class Lane:
-    """A titled group of rows, a row of thumbnails, or a curve."""
+    """A titled group of rows, a row of thumbnails, or a curve.
+
+    edits : what the mouse may change in it: "retime" its diamonds, "paint" runs, "trim" their ends.
+    """
 
     id: str
     title: str
@@ -68,6 +73,7 @@ class Lane:
     thumbnails: bool = False
     curve: Curve | None = None
     padding: int = 6
+    edits: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -82,9 +88,13 @@ class Placed:
 
 @dataclass(frozen=True)
 class TimelineHit:
-    """What lies under the mouse: ruler, diamond, bar, row, lane or label, with the lane, the row and the frame."""
+    """What lies under the mouse, with the lane, the row and the frame.
 
-    kind: Literal["ruler", "diamond", "bar", "row", "lane", "label"]
+    kind : ruler, diamond, bar, row, lane or label; "first" and "last" are the ends of a bar that can be trimmed, "in"
+        and "out" the handles of the range.
+    """
+
+    kind: Literal["ruler", "diamond", "bar", "row", "lane", "label", "first", "last", "in", "out"]
     lane: str
     row: str
     frame: int
@@ -127,9 +137,25 @@ def total_height(placed: Sequence[Placed]) -> int:
     return placed[-1].top + placed[-1].height + 2 if placed else RULER + 2
 
 
-def hit(placed: Sequence[Placed], axis: Axis, x: float, y: float, reach: float = 7.0) -> TimelineHit | None:
-    """What lies at a widget place; a diamond is found within reach pixels, before the bar under it."""
+def hit(
+    placed: Sequence[Placed],
+    axis: Axis,
+    x: float,
+    y: float,
+    reach: float = 7.0,
+    range_: tuple[int, int] | None = None,
+) -> TimelineHit | None:
+    """What lies at a widget place; a diamond is found within reach pixels, before the bar under it.
+
+    ``range_`` are the in and out frames, whose handles stand in the lower part of the ruler.
+    """
     frame = axis.frame(x)
+    if range_ is not None and RULER - HANDLE <= y < RULER and x >= LABELS:
+        ends: tuple[tuple[Literal["in", "out"], int], ...] = (("in", range_[0]), ("out", range_[1]))
+        for kind, at in ends:
+            way = x - axis.x(at)
+            if (-HANDLE <= way <= 2) if kind == "in" else (-2 <= way <= HANDLE):
+                return TimelineHit(kind, "", "", at)
     if y < RULER:
         return TimelineHit("ruler", "", "", frame) if x >= LABELS else None
     for each in placed:
@@ -146,6 +172,11 @@ def hit(placed: Sequence[Placed], axis: Axis, x: float, y: float, reach: float =
             near = min(row.diamonds, key=lambda mark: abs(axis.x(mark.frame) - x), default=None)
             if near is not None and abs(axis.x(near.frame) - x) <= reach:
                 return TimelineHit("diamond", lane, row.id, near.frame)
+            if "trim" in each.lane.edits:
+                for bar in row.bars:
+                    for end, at in (("last", bar.last), ("first", bar.first)):
+                        if bar.style == "solid" and abs(axis.x(at) - x) <= TRIM:
+                            return TimelineHit(end, lane, row.id, at)  # type: ignore[arg-type]
             if any(axis.x(bar.first) - 2 <= x <= axis.x(bar.last) + 2 for bar in row.bars):
                 return TimelineHit("bar", lane, row.id, frame)
             return TimelineHit("row", lane, row.id, frame)

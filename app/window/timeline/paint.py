@@ -10,7 +10,8 @@ from PySide6.QtGui import QBrush, QFont, QImage, QPainter, QPen, QPolygonF
 
 from app.window import fonts, icons, theme
 from app.window.timeline.axis import LABELS, Axis
-from app.window.timeline.lanes import RULER, Bar, Curve, Diamond, Placed
+from app.window.timeline.drags import LaneEdit
+from app.window.timeline.lanes import HANDLE, RULER, Bar, Curve, Diamond, Placed
 
 Thumbnail = Callable[[int], QImage | None]
 
@@ -185,3 +186,36 @@ def paint_playhead(painter: QPainter, axis: Axis, frame: int, height: int) -> No
     painter.setPen(look.colour("window"))
     painter.setFont(fonts.font(fonts.CAPTION, QFont.Weight.DemiBold))
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+
+
+def paint_handles(painter: QPainter, axis: Axis, range_: tuple[int, int], chosen: bool) -> None:
+    """Draw the handles of the in and out frames under the numbers of the ruler."""
+    look = theme.active()
+    for frame, side in ((range_[0], -1), (range_[1], 1)):
+        x = axis.x(frame)
+        if not LABELS <= x <= axis.width:
+            continue
+        shape = QPolygonF(
+            [QPointF(x, RULER - HANDLE), QPointF(x + side * (HANDLE - 2), RULER - 1), QPointF(x, RULER - 1)]
+        )
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(look.colour("accent" if chosen else "line2"))
+        painter.drawPolygon(shape)
+
+
+def paint_preview(painter: QPainter, axis: Axis, placed: Sequence[Placed], edit: LaneEdit) -> None:
+    """Draw what a drag would change: the run, the diamond at its new place, or the new range."""
+    look = theme.active()
+    if edit.kind == "range":
+        left, right = axis.x(edit.first), axis.x(edit.last)
+        painter.fillRect(QRectF(left, RULER - 4, right - left, 3), look.colour("accent"))
+        return
+    for each in placed:
+        for row, top, height in each.rows:
+            if each.lane.id != edit.lane or row.id != edit.row:
+                continue
+            painter.fillRect(QRectF(LABELS, top - 1, axis.width, height + 2), look.colour("hover", 200))
+            if edit.kind == "retime":
+                paint_diamond(painter, axis.x(edit.last), top + height / 2, Diamond(edit.last, "edit"), 5.5)
+            else:
+                paint_bar(painter, axis, Bar(edit.first, edit.last, "edit"), top, height)

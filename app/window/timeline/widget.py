@@ -11,14 +11,24 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from app.window import theme
 from app.window.timeline import paint
 from app.window.timeline.axis import LABELS, Axis
+from app.window.timeline.drags import LaneDrag, LaneEdit, drag_from
 from app.window.timeline.lanes import RULER, Lane, Placed, TimelineHit, hit, layout, total_height
+
+HAND, SIDEWAYS = Qt.CursorShape.PointingHandCursor, Qt.CursorShape.SizeHorCursor
+CURSORS = {"diamond": HAND, "label": HAND, "first": SIDEWAYS, "last": SIDEWAYS, "in": SIDEWAYS, "out": SIDEWAYS}
 
 
 class LaneView(QWidget):
-    """Ruler and lanes. ``sought`` asks for a frame, ``clicked`` and ``pressed_menu`` say what was hit."""
+    """Ruler and lanes.
+
+    ``sought`` asks for a frame, ``clicked``, ``chosen_twice`` (a double click) and ``menu_wanted`` say what was hit,
+    ``edited`` gives a ``LaneEdit`` at the end of a drag.
+    """
 
     sought = Signal(int)
     clicked = Signal(object)
+    chosen_twice = Signal(object)
+    edited = Signal(object)
     menu_wanted = Signal(object, object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -32,6 +42,8 @@ class LaneView(QWidget):
         self._scrolled: dict[str, int] = {}
         self._still: QPixmap | None = None
         self._seeking = False
+        self._drag: LaneDrag | None = None
+        self.preview: LaneEdit | None = None
         self.still_paints = 0
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
@@ -93,7 +105,21 @@ class LaneView(QWidget):
         self.refresh()
 
     def _find(self, event: QMouseEvent) -> TimelineHit | None:
-        return hit(self.placed, self.axis, event.position().x(), event.position().y())
+        return hit(self.placed, self.axis, event.position().x(), event.position().y(), range_=self._ends())
+
+    def _ends(self) -> tuple[int, int]:
+        return self.range or (0, self.axis.count - 1)
+
+    def cancel(self) -> bool:
+        """Give up the drag under way; says whether there was one."""
+        was, self._drag, self.preview = self._drag, None, None
+        if was is not None:
+            self.update()
+        return was is not None
+
+    def zoom(self, factor: float) -> None:
+        """Zoom in time round the present frame."""
+        self._set_axis(self.axis.showing(self.frame).zoomed(factor, self.axis.x(self.frame)))
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Seek by the ruler or an empty place, choose what was hit."""
@@ -105,28 +131,41 @@ class LaneView(QWidget):
             return
         if event.button() != Qt.MouseButton.LeftButton:
             return
-        self._seeking = found.kind not in ("label", "diamond")
-        if found.kind != "label":
+        self._drag = drag_from(found, self.placed, self._ends())
+        self._seeking = self._drag is None and found.kind not in ("label", "diamond")
+        if found.kind not in ("label", "in", "out"):
             self.sought.emit(found.frame)
         self.clicked.emit(found)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Scrub while the button is down; show that a diamond can be clicked."""
+        if self._drag is not None:
+            frame = self.axis.frame(event.position().x())
+            self.preview = self._drag.edit(frame)
+            if self._drag.kind != "range":
+                self.sought.emit(frame)
+            self.update()
+            return
         if self._seeking:
             self.sought.emit(self.axis.frame(event.position().x()))
             return
         found = self._find(event)
-        hand = found is not None and found.kind in ("diamond", "label")
-        self.setCursor(Qt.CursorShape.PointingHandCursor if hand else Qt.CursorShape.ArrowCursor)
+        kind = found.kind if found is not None else ""
+        self.setCursor(CURSORS.get(kind, Qt.CursorShape.ArrowCursor))
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """End scrubbing."""
+        """End scrubbing, or the drag: its change is asked for."""
         self._seeking = False
+        edit = self.preview
+        if self.cancel() and edit is not None:
+            self.edited.emit(edit)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        """Show the whole clip by a double click on the ruler."""
+        """Show the whole clip by a double click on the ruler; elsewhere say what was chosen."""
         if event.position().y() < RULER:
             self.show_all()
+        elif (found := self._find(event)) is not None:
+            self.chosen_twice.emit(found)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         """Zoom in time at the mouse; scroll with Shift or sideways; over many tracks scroll their rows."""
@@ -180,11 +219,15 @@ class LaneView(QWidget):
         painter = QPainter(self)
         painter.drawPixmap(0, 0, self._still)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.preview is not None:
+            paint.paint_preview(painter, self.axis, self.placed, self.preview)
         if self.axis.count > 1:
             paint.paint_playhead(painter, self.axis, self.frame, min(total_height(self.placed), self.height()))
         painter.end()
 
     def _paint_range(self, painter: QPainter) -> None:
+        if self.axis.count > 1:
+            paint.paint_handles(painter, self.axis, self._ends(), self.range is not None)
         if self.range is None:
             return
         shade = theme.active().colour("canvas", 150)

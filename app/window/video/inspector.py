@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLineEdit, QVBoxLayout, QWidget
 
+from app.actions import proposing
 from app.model.edits import contacts, tracks
 from app.model.tracks import Track
 from app.window.controls import Chip, Elided, Meter, Row, ScrollColumn, Swatches, button, icon_button, label, separator
@@ -64,9 +67,16 @@ class TrackInspector(ScrollColumn):
         self.remove = button("Remove this click", lambda: self._edit(tracks.remove_click, self._frame()))
         self.end = button("End here", lambda: self._edit(tracks.end_track, self._frame()))
         self.hide_ = button("Hidden here", self._toggle_hidden)
-        self.contact = button("Remove contact", lambda: self._edit(contacts.remove_contact, self._frame()))
+        self.contact = button("Contact here", self._toggle_contact)
         self.visible_ = button("Do not draw", self._toggle_drawn)
         self.delete = button("Delete point", lambda: self._edit(tracks.delete_track))
+        for each, words in (
+            (self.end, "The point leaves the picture here (E); a click in a later frame restarts it."),
+            (self.hide_, "Something is in front of the point in this frame (X)."),
+            (self.contact, "The point stands on the ground in this frame (Shift+C)."),
+            (self.visible_, "Keep the point without drawing it (Shift+H)."),
+        ):
+            each.setToolTip(words)
         for number, each in enumerate((self.remove, self.end, self.hide_, self.contact, self.visible_, self.delete)):
             grid.addWidget(each, number // 2, number % 2)
         return grid
@@ -91,9 +101,12 @@ class TrackInspector(ScrollColumn):
         clicked = frame in track.clicks
         hidden = any(frame in interval for interval in track.occluded)
         self.remove.setEnabled(clicked and len(track.clicks) > 1)
-        self.end.setEnabled(not clicked and frame > min(track.clicks))
+        gone = any(frame in interval for interval in track.absent)
+        self.end.setEnabled(not gone and not clicked and frame > min(track.clicks))
+        self.end.setText("Has ended" if gone else "End here")
         self.hide_.setText("Not hidden here" if hidden else "Hidden here")
-        self.contact.setEnabled(any(frame in contact.span for contact in track.contacts))
+        planted = any(frame in contact.span for contact in track.contacts)
+        self.contact.setText("No contact here" if planted else "Contact here")
         self.visible_.setText("Do not draw" if track.visible else "Draw again")
         self.suggest.setEnabled(known.complete)
 
@@ -122,11 +135,25 @@ class TrackInspector(ScrollColumn):
     def _suggest(self) -> None:
         if self.project is None or self.track is None:
             return
-        found = self.project.result(self.project.session.stages.track(self.track.id))
+        found = proposing.click_wanted(self.project.session, self.track.id)
         if found is not None:
-            from imitation.tracking import suggest_correction
+            self.go.emit(found[1])
 
-            self.go.emit(int(suggest_correction(found)))
+    def _toggle_contact(self) -> None:
+        self._edit(contacts.toggle_contact, self._frame())
+
+    def command(self, name: str) -> bool:
+        """Do a command on the track that is shown; says whether it was one."""
+        handlers: dict[str, Callable[[], object]] = {
+            "contact_here": self._toggle_contact,
+            "end_point": lambda: self._edit(tracks.end_track, self._frame()),
+            "hide_point": self._toggle_hidden,
+            "draw_point": self._toggle_drawn,
+            "rename_point": lambda: (self.name.setFocus(), self.name.selectAll()),
+        }
+        if name in handlers and self.track is not None:
+            handlers[name]()
+        return name in handlers
 
 
 class SpanTable(QWidget):

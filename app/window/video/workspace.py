@@ -8,11 +8,12 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
+from app.actions import proposing
 from app.model.document import Document
 from app.model.values import KeyMask
 from app.window.canvas import Canvas
 from app.window.canvas.gestures import Cancelled, Chosen, Drawing, Drawn, Gesture, Moved, Moving, Placed
-from app.window.controls import ErrorBar, Panel, icon_button, label, toggle, tool
+from app.window.controls import ErrorBar, Panel, button, icon_button, label, toggle, tool
 from app.window.frames import FrameLoader
 from app.window.picture_layers import Shown, layers, track_at, track_marks
 from app.window.picture_notes import PictureNotes
@@ -22,6 +23,7 @@ from app.window.video import edits_by_mouse
 from app.window.video.inspector import TrackInspector
 from app.window.video.mask_editing import is_part, moved
 from app.window.video.point_windows import PointWindows, Window, window_frames
+from app.window.video.proposals import ContactProposals
 from app.window.video.steps import StepList, steps
 from app.window.video.tools import HINTS, TOOLS, Tool, gesture_for
 
@@ -31,6 +33,7 @@ class VideoWorkspace(QWidget):
 
     hint = Signal(str)
     run_wanted = Signal()
+    lanes_changed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -40,6 +43,7 @@ class VideoWorkspace(QWidget):
         self.shown = Shown(names=False)
         self.frame = 0
         self.tool: Tool = "select"
+        self.proposals = ContactProposals()
         self.contact_start: tuple[str, int] | None = None
         self._marks: tuple = ()
         row = QHBoxLayout(self)
@@ -117,6 +121,14 @@ class VideoWorkspace(QWidget):
         self.inspector = TrackInspector()
         self.inspector.go.connect(self._go)
         self.track_panel.column.addWidget(self.inspector, 1)
+        offers = QHBoxLayout()
+        offers.setContentsMargins(12, 0, 12, 12)
+        offers.setSpacing(6)
+        self.propose_button = button("Propose contacts", lambda: self.command("propose_contacts"), name="contact")
+        self.accept_button = button("Accept all", lambda: self.command("accept_contacts"))
+        offers.addWidget(self.propose_button)
+        offers.addWidget(self.accept_button)
+        self.track_panel.column.addLayout(offers)
         self.steps_panel = Panel("What this project needs")
         self.steps = StepList()
         self.steps.run.connect(self.run_wanted)
@@ -134,6 +146,7 @@ class VideoWorkspace(QWidget):
         """Take another project."""
         self.project, self.reading, self.loader = project, Reading(project), loader
         self.shown.before = {}
+        self.proposals = ContactProposals()
         self.contact_start = None
         if loader is not None:
             loader.also_ready.connect(lambda _: self.windows.update())
@@ -180,6 +193,9 @@ class VideoWorkspace(QWidget):
         self._show_windows()
         known = next((reading.track(each) for each in project.document.tracks if each.id == project.track_id), None)
         self.inspector.show_track(project, known, frame)
+        count = self.proposals.count(project)
+        self.accept_button.setText(f"Accept all {count}" if count > 1 else "Accept it" if count else "Accept all")
+        self.accept_button.setEnabled(count > 0)
         self.steps.show_steps(steps(project))
         self.canvas.update()
 
@@ -305,6 +321,21 @@ class VideoWorkspace(QWidget):
         if isinstance(event, Cancelled | Chosen | Moved):
             self.hint.emit(HINTS[self.tool])
 
+    def _proposed(self, sentence: str) -> None:
+        self.notes.say(sentence)
+        self.lanes_changed.emit()
+
+    def _next_problem(self) -> None:
+        """Go to the frame that needs a click most: of the selected point, or of all."""
+        project = self.project
+        assert project is not None
+        found = proposing.click_wanted(project.session, project.track_id)
+        if found is None:
+            self.notes.say("No frame asks for a click: points that are still followed come later.")
+            return
+        project.select_track(found[0])
+        project.show_frame(found[1])
+
     # commands ----------------------------------------------------------------------------------------------------
 
     def command(self, name: str) -> bool:
@@ -317,6 +348,8 @@ class VideoWorkspace(QWidget):
             if self.tool == "select":
                 return False
             self._choose_tool("select")
+        elif self.project is not None and self.inspector.command(name):
+            pass
         elif name in (handlers := self._handlers()):
             handlers[name]()
         else:
@@ -333,6 +366,9 @@ class VideoWorkspace(QWidget):
             "magnifier": self.magnifier_button.toggle,
             "overlay": lambda: self._switch("marks", not self.shown.marks),
             "delete": lambda: edits_by_mouse.delete(project, frame, self.shown.mask_part),
+            "next_problem": self._next_problem,
+            "propose_contacts": lambda: self._proposed(self.proposals.find(project)),
+            "accept_contacts": lambda: self._proposed(self.proposals.accept(project)),
             "next_track": project.select_next_track,
             "nudge_left": lambda: nudge(project, self.reading, frame, -0.25, 0.0),
             "nudge_right": lambda: nudge(project, self.reading, frame, 0.25, 0.0),
