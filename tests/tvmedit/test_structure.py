@@ -7,7 +7,7 @@ import pytest
 
 import tvmedit
 from imitation import InputError
-from resources.performer import Capture
+from resources.performer import Capture, Part, perform
 
 
 def cyclic_distances(periods: list[int], repeats: int) -> np.ndarray:
@@ -105,3 +105,15 @@ def test_precision_and_recall_match_one_to_one() -> None:
     """Two found boundaries beside one label are one hit and one false one."""
     agreement = tvmedit.compare_boundaries([10, 12, 90], [11, 50], tolerance=5)
     assert (agreement.matched, agreement.precision, agreement.recall) == (1, pytest.approx(1 / 3), 0.5)
+
+
+def test_one_round_repeats_on_the_users_word() -> None:
+    """A file that holds one round of a walk is played once, unless the user says that it repeats."""
+    capture = perform([Part("walk", 1)], fps=15, seed=4)
+    atoms = tvmedit.analyse(capture.meshes(), fps=15).atom_distances
+    (once,) = tvmedit.parse_structure(atoms, fps=15).clusters
+    assert not once.cyclic
+    (again,) = tvmedit.parse_structure(atoms, fps=15, force_cyclic=True).clusters
+    assert again.cyclic
+    assert again.textons == ((0, len(capture) - 1),)
+    assert "user's word" in again.reason

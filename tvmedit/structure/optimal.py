@@ -62,6 +62,8 @@ def parse_optimal(
     if boundaries is None:
         clusters = _merged(atoms, clusters, novelty)
         clusters = [piece for cluster in clusters for piece in split_unlike(atoms, cluster, novelty)]
+    if force_cyclic and (boundaries is not None or len(clusters) == 1):
+        clusters = [_one_round(cluster, shortest) for cluster in clusters]
     clusters = _kinds(atoms, clusters, novelty)
     found = tuple(clusters)
     reason = _reason(found, median, still, fps)
@@ -119,6 +121,13 @@ def _merged(atoms: NDArray[np.float32], clusters: list[Cluster], novelty: float)
         reason = f"One motion that changes its speed, from {first.period:.0f} to {second.period:.0f} frames a period."
         joined[least : least + 2] = [Cluster(first.first, second.last, True, textons, length, reason=reason)]
     return joined
+
+
+def _one_round(cluster: Cluster, shortest: int) -> Cluster:
+    """A cluster in which nothing was found to come again, as one round of something that does."""
+    if cluster.cyclic or len(cluster) < shortest:
+        return cluster
+    return attrs.evolve(cluster, cyclic=True, reason="That it repeats is the user's word: it shows one round.")
 
 
 def _kinds(atoms: NDArray[np.float32], clusters: list[Cluster], novelty: float) -> list[Cluster]:

@@ -43,7 +43,8 @@ def parse_structure(
     sensitivity : float
         1 as measured; less gives fewer clusters.
     force_cyclic : bool
-        Every stretch long enough is taken as repeating, however unlike its repeats are.
+        Every stretch long enough is taken as repeating, however unlike its repeats are; a sequence of one motion, or
+        a cluster between the user's boundaries, in which nothing comes again is taken as one round.
     still : float
         A median distance below this is a body that hardly moves; in the unit of the distances.
     boundaries : sequence of int, optional

@@ -12,8 +12,8 @@ from app.formats.tvm.frames import MeshFrames
 
 FPS = 25.0
 LOOKED_AT = 5
-PERSON = (0.8, 2.4)
-"""Metres: what stands this high is taken for a person, or a larger animal, in metres."""
+PERSON = 1.7
+"""Metres."""
 
 
 @attrs.frozen
@@ -40,7 +40,7 @@ def guess_facts(
     """Take what the user says, else what the files say, else guess.
 
     Up: the axis, y or z, whose lower end stays at one level and along which the body is long. Unit: metres,
-    centimetres or millimetres, whichever makes the body as high as a person; metres where none does.
+    centimetres or millimetres, whichever brings the body nearest to a person's height.
     """
     guessed: list[Literal["fps", "up", "unit"]] = []
     words: list[str] = []
@@ -75,7 +75,6 @@ def _up(ends: np.ndarray) -> Up:
 
 
 def _unit(height: float) -> tuple[float, str]:
-    for metres, named in ((1.0, "metres"), (0.01, "centimetres"), (0.001, "millimetres")):
-        if PERSON[0] <= height * metres <= PERSON[1]:
-            return metres, named
-    return 1.0, "metres"
+    """The unit that brings the body nearest to a person's height, counted in powers of ten."""
+    units = ((1.0, "metres"), (0.01, "centimetres"), (0.001, "millimetres"))
+    return min(units, key=lambda unit: abs(np.log(max(height * unit[0], 1e-300) / PERSON)))
