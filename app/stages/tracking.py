@@ -57,6 +57,7 @@ def spans(document: Document, track: Track) -> tuple[Stage, ...]:
             _span,
             (clip, track.mode, plan),
             needs,
+            version=2,
             weight=0.004 * (plan.last - plan.first),
         )
         for plan in plans

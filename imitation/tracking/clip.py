@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from imitation.errors import InputError
 from imitation.tracking.flow import FlowField, PairFlow, Picture, check_frames, flow_scale, single_threaded_cv2
+from imitation.tracking.subject import cut_out, plain_grey, subject_flow
 
 LEVELS = 4
 NO_MASK = np.zeros((0, 0), np.uint8)
@@ -57,6 +58,7 @@ class PreparedClip:
         self._kept: OrderedDict[tuple[str, int], tuple[Any, int]] = OrderedDict()
         self._lock = threading.Lock()
         self._engines = threading.local()
+        self._plain: int | None = None
 
     def __len__(self) -> int:
         return self.count
@@ -106,6 +108,56 @@ class PreparedClip:
         value: Pyramid = self._get("colours", frame, lambda t: self._pyramid(self._picture(t)))
         return value
 
+    def looks(self, frame: int) -> Pyramid:
+        """Gaussian pyramid of what trackers compare: the subject on plain ground where there are masks, else all."""
+        if self.masks is None:
+            return self.colours(frame)
+        value: Pyramid = self._get("looks", frame, lambda t: self._pyramid(self._cut_out(t)))
+        return value
+
+    def look_greys(self, frame: int) -> Pyramid:
+        """Gaussian pyramid of the grey of ``looks``."""
+        if self.masks is None:
+            return self.greys(frame)
+
+        def make(t: int) -> Pyramid:
+            cv2 = single_threaded_cv2()
+            return self._pyramid(cv2.cvtColor(self.looks(t)[0], cv2.COLOR_RGB2GRAY))
+
+        value: Pyramid = self._get("look greys", frame, make)
+        return value
+
+    def _cut_out(self, frame: int) -> Picture:
+        with self._lock:
+            if self._plain is None and self.masks is not None:
+                self._plain = plain_grey(self.frames, self.masks)
+        return cut_out(self._picture(frame), self.mask(frame), self._plain or 0)
+
+    @property
+    def subject_scale(self) -> int:
+        """Picture pixels per pixel of ``subject_flow``."""
+        return self.scale if self.masks is None else 1
+
+    def subject_flow(self, start: int, stop: int) -> NDArray[np.uint16]:
+        """As ``flow``, of the subject on plain ground where there are masks (fine enough for thin limbs)."""
+        if self.masks is None:
+            return self.flow(start, stop)
+        pair, side = min(start, stop), 0 if start < stop else 1
+        both: tuple[NDArray[np.uint16], NDArray[np.uint16]] = self._get("subject flow", pair, self._subject_pair)
+        return both[side]
+
+    def _subject_pair(self, pair: int) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
+        first, second = (self.look_greys(t)[0] for t in (pair, pair + 1))
+        inside = (self.mask(pair) | self.mask(pair + 1)).view(np.bool_)
+        both = subject_flow(self._engine(), first, second, inside)
+        return both[0].view(np.uint16), both[1].view(np.uint16)
+
+    def _engine(self) -> PairFlow:
+        if not hasattr(self._engines, "flow"):
+            self._engines.flow = PairFlow()
+        engine: PairFlow = self._engines.flow
+        return engine
+
     def greys(self, frame: int) -> Pyramid:
         """Gaussian pyramid of the grey picture, finest first."""
 
@@ -127,9 +179,7 @@ class PreparedClip:
         return both[side]
 
     def _pair(self, pair: int) -> tuple[NDArray[np.uint16], NDArray[np.uint16]]:
-        if not hasattr(self._engines, "flow"):
-            self._engines.flow = PairFlow()
-        engine: PairFlow = self._engines.flow
+        engine = self._engine()
         first, second = (engine.grey(self._picture(t), self.scale) for t in (pair, pair + 1))
         both = engine.one_way(first, second, self.scale), engine.one_way(second, first, self.scale)
         return both[0].view(np.uint16), both[1].view(np.uint16)

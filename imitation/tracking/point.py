@@ -15,7 +15,7 @@ from imitation.tracking.clip import PreparedClip, prepare_clip
 from imitation.tracking.flow import FlowField, Picture
 from imitation.tracking.judge import judge
 from imitation.tracking.paper import PaperOptions, solve_paper
-from imitation.tracking.robust import RobustOptions, solve_robust
+from imitation.tracking.robust import SUBJECT, RobustOptions, solve_robust
 from imitation.tracking.track import (
     Click,
     Interval,
@@ -33,12 +33,12 @@ Options = RobustOptions | PaperOptions
 Masks = Sequence[NDArray[np.bool_]]
 
 
-def _options(mode: str, options: Options | None) -> Options:
+def _options(mode: str, options: Options | None, masked: bool) -> Options:
     if mode not in ("robust", "paper"):
         raise InputError(f'The tracking mode must be "robust" or "paper", but got "{mode}".')
     wanted = RobustOptions if mode == "robust" else PaperOptions
     if options is None:
-        return wanted()
+        return SUBJECT if masked and mode == "robust" else wanted()
     if not isinstance(options, wanted):
         raise InputError(f'The mode "{mode}" takes {wanted.__name__}, but got {type(options).__name__}.')
     return options
@@ -87,7 +87,8 @@ def track_span(
     ------
     InputError : no click, clicks in the wrong order or outside, wrong mode.
     """
-    clip, chosen = prepare_clip(frames, flow=flow, masks=mask), _options(mode, options)
+    clip = prepare_clip(frames, flow=flow, masks=mask)
+    chosen = _options(mode, options, clip.masks is not None)
     given = [click for click in (left, right) if click is not None]
     check_clicks({frame: (x, y) for frame, x, y in given}, clip.count, clip.height, clip.width)
     first, last = given[0][0], given[-1][0]
@@ -121,7 +122,8 @@ def track_point(
     frames : sequence of uint8 RGB pictures (h, w, 3), or a ``PreparedClip`` shared by many points.
     clicks : frame -> (x, y), pixels of the full picture, pixel centres at integers. The path passes through them.
     mode : "robust", or "paper": eq. 13-14 and Algorithm 1 as printed.
-    mask : one (h, w) bool array a frame, the subject; candidates off it are dear. Not used by the mode "paper".
+    mask : one (h, w) bool array a frame, the subject: all else is painted over, so that thin limbs keep apart from what
+        is behind them, and places off it are dear. Not used by the mode "paper".
     absent : intervals (first, last), frames included, where the track does not exist: it ends before them and
         starts anew after them, where a click is.
     flow : dense flow from ``compute_flow``; None computes what is missing; "lk" gives a quick preview without it.
@@ -137,7 +139,8 @@ def track_point(
     InputError : no frames, no clicks, clicks outside the clip or the picture or not finite, masks or flow of
         another size, a click where the track is absent.
     """
-    clip, chosen = prepare_clip(frames, flow=flow, masks=mask), _options(mode, options)
+    clip = prepare_clip(frames, flow=flow, masks=mask)
+    chosen = _options(mode, options, clip.masks is not None)
     marks = check_clicks(clicks, clip.count, clip.height, clip.width)
     gaps = check_absent(absent, clip.count)
     plans = plan_spans(marks, clip.count, gaps)

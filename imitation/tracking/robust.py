@@ -40,26 +40,34 @@ class RobustOptions:
     likeness: float = 0.8
 
 
+SUBJECT = RobustOptions(window=21, local_window=15, tolerance=5.0)
+"""Where masks cut the subject out: smaller windows hold a thin limb, and its flow is to be trusted more."""
+
+
 def _follow_local(clip: PreparedClip, order: Sequence[int], start: Place, half: int, report: Progress) -> Array:
     from imitation.tracking.kernels import local_motion
 
     path = np.empty((len(order), 2))
     path[0] = start
     for i in range(1, len(order)):
-        path[i] = local_motion(clip.greys(order[i - 1]), clip.greys(order[i]), path[i - 1, 0], path[i - 1, 1], half, 20)
+        first, second = clip.look_greys(order[i - 1]), clip.look_greys(order[i])
+        path[i] = local_motion(first, second, path[i - 1, 0], path[i - 1, 1], half, 20)
         report(i / len(order))
     return path
 
 
-def _follow_flow(clip: PreparedClip, order: Sequence[int], start: Place, report: Progress) -> Array:
+def _follow_flow(
+    clip: PreparedClip, order: Sequence[int], start: Place, report: Progress, plain: bool = False
+) -> Array:
     from imitation.tracking.kernels import HALF_TO_FLOAT, flow_at
 
     path = np.empty((len(order), 2))
     path[0] = start
     for i in range(1, len(order)):
         x, y = path[i - 1]
-        bits = clip.flow(order[i - 1], order[i])
-        u, v = flow_at(bits, HALF_TO_FLOAT, clip.scale, x, y, clip.mask(order[i - 1]))
+        bits = clip.flow(order[i - 1], order[i]) if plain else clip.subject_flow(order[i - 1], order[i])
+        scale = clip.scale if plain else clip.subject_scale
+        u, v = flow_at(bits, HALF_TO_FLOAT, scale, x, y, clip.mask(order[i - 1]))
         path[i] = x + u, y + v
         report(i / len(order))
     return path
@@ -75,11 +83,15 @@ def _guesses(
     ahead = [_follow_local(clip, order, start, half, sources[0])]
     if not clip.preview:
         ahead.append(_follow_flow(clip, order, start, sources[1]))
+        if clip.masks is not None:
+            ahead.append(_follow_flow(clip, order, start, sources[1], True))  # masks may be wrong
     if stop is None:
         return np.stack(ahead, axis=1), np.stack(ahead, axis=1)
     back = [_follow_local(clip, backwards, stop, half, sources[2])[::-1]]
     if not clip.preview:
         back.append(_follow_flow(clip, backwards, stop, sources[3])[::-1])
+        if clip.masks is not None:
+            back.append(_follow_flow(clip, backwards, stop, sources[3], True)[::-1])
     paths = []
     for forward, backward in zip(ahead, back, strict=True):
         paths += [forward, backward, (1 - t) * forward + t * backward]
@@ -105,9 +117,9 @@ class _Appearance:
     def of(cls, clip: PreparedClip, clicks: Sequence[tuple[int, Place]], half: int) -> _Appearance:
         from imitation.tracking.robust_kernels import make_template
 
-        fine = [make_template(clip.colours(frame)[0], x, y, half) for frame, (x, y) in clicks]
+        fine = [make_template(clip.looks(frame)[0], x, y, half) for frame, (x, y) in clicks]
         small = max(2, round(half / 4))
-        coarse = [make_template(clip.colours(frame)[2], x / 4, y / 4, small) for frame, (x, y) in clicks]
+        coarse = [make_template(clip.looks(frame)[2], x / 4, y / 4, small) for frame, (x, y) in clicks]
         stacks = [np.stack([part[i] for part in found]) for found in (fine, coarse) for i in (0, 1)]
         return cls(*stacks)
 
@@ -139,7 +151,7 @@ def solve_robust(
     facts, ahead, back = np.zeros((frames, most, 3)), np.zeros((frames, most, 2)), np.zeros((frames, most, 2))
     report = part(progress, 0.4, 1.0)
     for i, frame in enumerate(order):
-        levels, mask = clip.colours(frame), clip.mask(frame)
+        levels, mask = clip.looks(frame), clip.mask(frame)
         if i == 0 or (i == frames - 1 and stop is not None):
             places[i, 0] = start if i == 0 or stop is None else stop
         else:
@@ -157,8 +169,8 @@ def solve_robust(
         describe(levels[0], places[i], counts[i], looks.fine, looks.norms, weight, mask, facts[i])
         for other, out in ((i + 1, ahead), (i - 1, back)):
             if 0 <= other < frames and not clip.preview:
-                bits = clip.flow(frame, order[other])
-                flows_at(bits, HALF_TO_FLOAT, clip.scale, places[i], counts[i], mask, out[i])
+                bits = clip.subject_flow(frame, order[other])
+                flows_at(bits, HALF_TO_FLOAT, clip.subject_scale, places[i], counts[i], mask, out[i])
             elif 0 <= other < frames:
                 _local_flows(clip, frame, order[other], places[i], counts[i], options, out[i])
         report((i + 1) / frames)
@@ -173,7 +185,7 @@ def solve_robust(
     match = np.maximum(chosen[:, 1], chosen[:, 2])
     kin = np.ones(frames)
     for i in range(1, frames):
-        pictures = clip.colours(order[i - 1])[0], clip.colours(order[i])[0]
+        pictures = clip.looks(order[i - 1])[0], clip.looks(order[i])[0]
         kin[i] = kinship(pictures[0], *positions[i - 1], pictures[1], *positions[i], KIN_WINDOW // 2)
     hidden = hidden_frames(match, kin)
     if options.settle > 0 and hidden.any():
@@ -206,7 +218,7 @@ def _settle(
     for i in np.flatnonzero(near[: -1 if closed else frames]).tolist():
         weight = (frames - 1 - i) / (frames - 1) if closed else 1.0
         x, y, found = settle(
-            clip.colours(order[i])[0], *positions[i], looks.fine, looks.norms, weight, options.settle, options.likeness
+            clip.looks(order[i])[0], *positions[i], looks.fine, looks.norms, weight, options.settle, options.likeness
         )  # fmt: skip
         if found >= options.likeness:
             shift[i], sure[i], match[i] = positions[i] - (x, y), True, found
@@ -222,7 +234,7 @@ def _local_flows(
 ) -> None:
     from imitation.tracking.kernels import local_motion
 
-    first, second, half = clip.greys(frame), clip.greys(other), options.local_window // 2
+    first, second, half = clip.look_greys(frame), clip.look_greys(other), options.local_window // 2
     for k in range(count):
         x, y = places[k]
         tx, ty = local_motion(first, second, x, y, half, 10)
