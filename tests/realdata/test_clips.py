@@ -29,6 +29,12 @@ def test_dog_moves_a_lion(shared_data: Path, tmp_path: Path) -> None:
     assert solved.deviation() < 5.0
     travelled = np.linalg.norm(solved.motion.vertices[-1].mean(axis=0) - solved.motion.vertices[0].mean(axis=0))
     assert 0.8 < travelled / solved.diagonal < 2.0, "the dog walks a good body length"
+    before, sunk = solved.apart(), solved.sunk()
+    solved.pose_first_frame()
+    assert solved.apart() < min(6.0, 0.2 * before), "the dog's pose in frame 0 goes through the whole clip"
+    assert solved.sunk() < sunk
+    assert solved.slide() < 0.02
+    assert solved.stretch() < 2.6
 
 
 def test_camel_moves_a_horse(shared_data: Path, tmp_path: Path) -> None:
@@ -47,3 +53,8 @@ def test_camel_moves_a_horse(shared_data: Path, tmp_path: Path) -> None:
     camera = cameras[0].centre
     first, last = (np.linalg.norm(solved.motion.vertices[frame].mean(axis=0) - camera) for frame in (0, -1))
     assert last > 1.1 * first, "the camel walks away from the camera"
+    assert "tilted by 4 degrees" in solved.world.note
+    before = solved.apart()
+    solved.pose_first_frame()
+    assert solved.apart() < min(5.0, 0.2 * before), "the camel's pose in frame 0 goes through the whole clip"
+    assert solved.stretch() < 2.9
