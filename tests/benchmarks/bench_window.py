@@ -156,7 +156,7 @@ def test_picking(bench: Recorder) -> None:
 
 
 def test_mesh_over_video(bench: Recorder, qapp: QApplication) -> None:
-    """How far small balls lie from where an odd camera sees them: centroids of drawn pixels and of K [R | T] X."""
+    """How far balls lie from where an odd camera sees them: centroids of drawn pixels and of K [R | T] X."""
     from app.window.viewport import Viewport
     from app.window.viewport.orbit import Orbit
     from imitation.geometry import Camera
@@ -171,7 +171,7 @@ def test_mesh_over_video(bench: Recorder, qapp: QApplication) -> None:
     vertices, faces = ball(3)
     random, away = np.random.default_rng(1), []
     for centre in random.uniform((-0.6, -0.6, 0.5), (0.6, 0.6, 1.5), (12, 3)):
-        view.show_mesh(0.03 * vertices + centre, faces, None)
+        view.show_mesh(0.12 * vertices + centre, faces, None)
         view.show_camera(camera, picture)
         view.look("camera")
         settle()
@@ -180,7 +180,7 @@ def test_mesh_over_video(bench: Recorder, qapp: QApplication) -> None:
         ys, xs = np.mgrid[: rows.shape[0], : rows.shape[1]]
         seen = (np.array([(rows * xs).sum(), (rows * ys).sum()]) / rows.sum() + 0.5) / (rows.shape[1] / 600)
         # The middle of a ball's outline is not its centre's projection: the tilted cone makes an ellipse.
-        wanted = _centroid(camera.project(0.03 * vertices + centre) + 0.5)
+        wanted = _centroid(camera.project(0.12 * vertices + centre) + 0.5)
         away.append(float(np.linalg.norm(seen - wanted)))
     bench.record(
         "window: mesh over video, worst of 12", max(away), asked=0.05, unit="px", note=f"mean {np.mean(away):.3f}"
@@ -216,7 +216,9 @@ def loader(qapp: QApplication, film: Path) -> Iterator[object]:
     from app.formats import open_video
     from app.window.frames import FrameLoader
 
-    made = FrameLoader(lambda: open_video(film), FRAMES)
+    source = open_video(film)
+    made = FrameLoader(lambda: source, FRAMES)
+    made.source = source
     yield made
     made.close()
 
@@ -254,10 +256,10 @@ def test_scrub(bench: Recorder, loader: object) -> None:
     kept = [ask(frame) for frame in range(59, 50, -1) for _ in range(4)]
     cold = []
     for frame in random.permutation(np.arange(80, FRAMES, 9)):
+        settle(400)
         loader._kept.clear()
-        settle(60)
-        while loader.peek(int(frame)) is not None:
-            loader._kept.clear()
+        for cache in (loader.source._decoded, loader.source._shown):
+            cache.clear()
         cold.append(ask(int(frame)))
     for name, values, asked in (("cached", kept, 8.0), ("next", following, 15.0), ("random, cold", cold, 80.0)):
         note = f"95 of 100 within {np.percentile(values, 95):.1f} ms; {load()}"
