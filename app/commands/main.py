@@ -21,6 +21,8 @@ VERBS = {
     "info": "app.commands.project:info",
     "check": "app.commands.check:check",
     "cameras": "app.commands.solve:cameras",
+    "depth": "app.commands.depth:depth",
+    "plate": "app.commands.depth:plate",
     "track": "app.commands.solve:track",
     "contacts": "app.commands.solve:contacts",
     "animate": "app.commands.solve:animate",

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from app.model.character import Character
 from app.model.document import Document
 from app.model.tracks import Track
-from app.stages import animation, performance, scene, tracking
+from app.stages import animation, depth, performance, scene, tracking
 from app.stages.stage import Stage
 
 
@@ -37,6 +37,15 @@ class Stages:
     def world(self) -> Stage:
         """The camera path with Z up and in metres, as far as they are known."""
         return self._once("world", lambda: scene.world(self.document))
+
+    @property
+    def depth(self) -> Stage:
+        """Depth of the background in key frames."""
+        return self._once("depth", lambda: depth.depth(self.document))
+
+    def plate(self, frame: int) -> Stage:
+        """One frame without the subject."""
+        return self._once(f"plate/{frame}", lambda: depth.plate(self.document, str(frame)))
 
     def spans(self, track_id: str) -> tuple[Stage, ...]:
         """The spans of a track."""

@@ -13,6 +13,7 @@ from imitation.cameras.path import CameraPath
 from imitation.depth.agreement import agreeing
 from imitation.depth.checks import Range, check_input, find_range, range_near
 from imitation.depth.depthmap import DepthMap, resized
+from imitation.depth.lead import lead
 from imitation.depth.pictures import LONGEST, Pictures
 from imitation.depth.projection import consensus, projected_inverse
 from imitation.depth.semiglobal import semiglobal
@@ -22,6 +23,7 @@ from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
 PLANES, PLANES_LARGE = 144, 160
+LEADERS = 10  # other maps, the nearest in time, that lead the second pass
 LARGE = 700  # pixels on the longest side from which there are more planes
 
 
@@ -75,7 +77,7 @@ class DepthSolver:
         self.reach = reach or find_range(frames, cameras, masks)
         count = planes or (PLANES_LARGE if max(self.pictures.size) > LARGE else PLANES)
         self._count = count
-        self.sigma = 0.7 * max(1.0, max(self.pictures.size) / 480)
+        self.sigma = 1.0 * max(1.0, max(self.pictures.size) / 480)
 
     def planes(self, frame: int) -> NDArray[np.float32]:
         """Inverse depths that are tried in a frame, evenly spaced over what is seen near it."""
@@ -153,12 +155,18 @@ class DepthSolver:
             pictures.signal(frame), pictures.hidden(frame), np.stack([pictures.signal(v) for v in views]),
             geometry(pose(frame), [pose(v) for v in views]), planes, prior, self.sigma,
         )  # fmt: skip
+        untold = volume == NEUTRAL
+        if known:
+            camera, size = pictures.camera(frame), pictures.size
+            others = sorted(known.values(), key=lambda each: (abs(each.frame - frame), each.frame))[:LEADERS]
+            layers = [projected_inverse(o.measured, pictures.camera(o.frame), camera, size) for o in others]
+            lead(volume, np.stack(layers), planes, 1.0)
         grey = pictures.grey(frame)
         grey[pictures.hidden(frame) > 0] = 128  # the subject's edges are none of the background's
         plane = semiglobal(volume, grey)
         step = float(planes[1] - planes[0])
         chosen = np.rint(plane).astype(np.int64)[..., None]
-        seen = np.take_along_axis(volume, chosen, axis=2)[..., 0] != NEUTRAL
+        seen = ~np.take_along_axis(untold, chosen, axis=2)[..., 0]
         return Sketch(frame, (planes[0] + plane * np.float32(step)).astype(np.float32), seen, step)
 
 

@@ -1,0 +1,60 @@
+"""Verbs on the background: depth, plate."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+
+import click
+
+from app.actions.session import Session
+from app.commands.console import Console
+from app.commands.project import PATH, PROJECT
+
+
+@click.command()
+@PROJECT
+@click.option("--write", "folder", type=PATH, help="Write the maps: false-colour PNG files and depth.npz.")
+@click.option("--mesh", "mesh", type=PATH, help="Write the background as a mesh: .ply, .obj or .glb.")
+@click.pass_obj
+def depth(console: Console, project: Path, folder: Path | None, mesh: Path | None) -> None:
+    """Measure the depth of the background in a sparse set of frames."""
+    from app.actions.backgrounds import solved_background, summary, write_background_mesh, write_depth
+
+    with closing(Session.open(project)) as session:
+        console.compute(session, "Measuring the background", (session.stages.depth, session.stages.world))
+        known, world = solved_background(session)
+        values = summary(known.maps)
+        unit = " m" if world.metric else ""
+        middle = f"{values['median']:.2f}{unit}"
+        lines = [
+            f"{len(known.maps)} key frames: {', '.join(map(str, values['key_frames']))}",
+            f"{values['nearest']:.2f} to {values['farthest']:.2f}{unit} away, half of it within {middle}",
+            f"{100 * values['confirmed']:.0f} % confirmed by other frames",
+        ]
+        if folder is not None:
+            values["files"] = [str(path) for path in write_depth(session, folder)]
+            lines.append(f"Wrote {len(values['files'])} files to {folder}")
+        if mesh is not None:
+            vertices, triangles = write_background_mesh(session, mesh)
+            values["mesh"] = {"file": str(mesh), "vertices": vertices, "triangles": triangles}
+            lines.append(f"Wrote {mesh}: {vertices} vertices, {triangles} triangles")
+        console.answer(values, lines)
+
+
+@click.command()
+@PROJECT
+@click.argument("target", type=PATH)
+@click.pass_obj
+def plate(console: Console, project: Path, target: Path) -> None:
+    """Film the clip without its subject, as an mp4."""
+    from app.actions.backgrounds import plate_film
+
+    with closing(Session.open(project)) as session:
+        console.compute(session, "Measuring the background", (session.stages.depth, session.stages.world))
+        with console.progress("Clean plates") as bar:
+            mean, least = plate_film(session, target, progress=bar)
+        console.answer(
+            {"film": str(target), "filled": mean, "filled_least": least},
+            [f"Wrote {target}: behind the subject {100 * mean:.1f} % from other frames, {100 * least:.1f} % at least"],
+        )

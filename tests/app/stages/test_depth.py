@@ -1,0 +1,69 @@
+"""Depth and plates of a project: keys, blocked states, the world's units, files."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import attrs
+import numpy as np
+
+from app.actions.backgrounds import false_colour, summary
+from app.model.document import Document
+from app.stages import depth as depth_stages
+from app.stages.depth import in_world, map_in_world
+from app.stages.project import Stages
+from app.stages.results import Masks, World
+from tests.imitation.depth.scenes import filmed_room
+
+
+class Here:
+    """The context of a stage without a project."""
+
+    def __init__(self, frames: Any) -> None:
+        self.media = SimpleNamespace(frames=lambda clip: frames)
+        self.seen: list[float] = []
+
+    def progress(self, fraction: float) -> None:
+        """Remember what was reported."""
+        self.seen.append(fraction)
+
+
+def test_without_a_clip_the_stages_say_what_is_missing() -> None:
+    """Depth and plates are blocked by the sentence of the clip."""
+    stages = Stages(Document())
+    assert stages.depth.why_blocked() == "Add a video first."
+    assert stages.plate(3).why_blocked() == "Add a video first."
+    assert stages.plate(3).name != stages.plate(4).name
+
+
+def test_a_stage_gives_what_the_engine_gives_and_the_world_scales_it() -> None:
+    """Depth in the cameras' units, a plate from it, and both in a world of twice the size."""
+    world = filmed_room(4, (160, 90), 12)
+    here: Any = Here(world.frames)
+    masks = Masks.pack(world.masks)
+    maps = depth_stages._depth(here, (None, 160), world.cameras, masks)  # type: ignore[arg-type]
+    assert here.seen[-1] == 1
+    assert all(np.isnan(each.depth[world.masks[each.frame]]).all() for each in maps)
+    plate = depth_stages._plate(here, (None, maps[1].frame), maps, world.cameras, masks)  # type: ignore[arg-type]
+    assert np.isfinite(plate.depth).all()
+    assert plate.filled > plate.invented
+    turned = world.cameras.transformed(2.0, np.eye(3), np.array([1.0, 2.0, 3.0]))
+    scaled = World(turned, 2.0, np.eye(3), np.zeros(3), np.array([0, 0, 1.0]), 0.0, True, True, True, None, "")
+    each = map_in_world(maps[0], scaled)
+    np.testing.assert_allclose(each.depth, 2 * maps[0].depth)
+    before, after = maps[0].points(8), each.points(8)
+    np.testing.assert_allclose(after, 2 * before + [1, 2, 3], atol=1e-4)
+    np.testing.assert_allclose(in_world(plate.depth, scaled), 2 * plate.depth)
+    told = summary(maps)
+    assert told["nearest"] < told["median"] < told["farthest"]
+    assert 0 < told["confirmed"] <= 1
+    assert attrs.evolve(each, frame=5).frame == 5
+
+
+def test_false_colour_runs_from_blue_to_red() -> None:
+    """Near is red, far is blue, unknown is grey."""
+    picture = false_colour(np.array([[1.05, 9.5, np.nan]]), 1.0, 10.0)
+    assert picture[0, 0, 0] > picture[0, 0, 2]
+    assert picture[0, 1, 2] > picture[0, 1, 0]
+    np.testing.assert_array_equal(picture[0, 2], [70, 70, 70])
