@@ -18,6 +18,7 @@ LEVELS = 4
 ROUND_TRIP = 0.5  # pixels: forward and back again
 SETTLE = 15  # pixels: window in which a corner is compared with its first picture
 STRAY = 1.0  # pixels: a first picture that fits farther away does not fit
+FRESH = 8  # frames: until then a corner has drifted by less than the fit to its first picture is noisy
 
 
 @attrs.frozen(eq=False)
@@ -140,7 +141,7 @@ class _Alive:
         """
         import cv2
 
-        for born in np.unique(self.born[self.born < frame - 1]).tolist():
+        for born in np.unique(self.born[self.born < frame - FRESH]).tolist():
             here = np.flatnonzero(self.born == born)
             first = self.pixels[here]
             settled, found, _ = cv2.calcOpticalFlowPyrLK(
