@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from app.formats.colmap_files import CAMERA_MODELS, Image, Lens, Point, read_model, write_model
-from app.formats.pinhole import CENTRE, Array, intrinsics, lost, natural, parameters
+from app.formats.images import natural_key
+from app.formats.pinhole import CENTRE, Array, intrinsics, lost, parameters
 from imitation.cameras import CameraPath
 from imitation.errors import InputError
 
@@ -30,7 +31,7 @@ def read_colmap(folder: Path) -> CameraPath:
     from scipy.spatial.transform import Rotation
 
     lenses, images, points = read_model(folder)
-    images = sorted(images, key=lambda image: natural(image.name))
+    images = sorted(images, key=lambda image: natural_key(image.name))
     if not images:
         raise InputError(f"The COLMAP model in {folder} has no registered images.")
     Ks: list[Array] = []

@@ -10,7 +10,8 @@ import numpy as np
 
 from app.formats.atomic import replacing
 from app.formats.images import read_bytes
-from app.formats.pinhole import Array, intrinsics, lost, natural, parameters
+from app.formats.images import natural_key
+from app.formats.pinhole import Array, intrinsics, lost, parameters
 from app.formats.ply import read_ply, write_ply
 from imitation.cameras import CameraPath
 from imitation.errors import InputError
@@ -56,7 +57,7 @@ def read_transforms(path: Path) -> CameraPath:
     if not isinstance(frames, list) or not frames:
         raise InputError(f"The file {path} has no list of frames: is it a transforms.json?")
     try:
-        frames = sorted(frames, key=lambda frame: natural(str(frame.get("file_path", ""))))
+        frames = sorted(frames, key=lambda frame: natural_key(str(frame.get("file_path", ""))))
         poses = np.array([frame["transform_matrix"] for frame in frames], np.float64)
         Ks = np.array([_lens(frame, whole, str(path)) for frame in frames])
         distortion = {key: _number(frames[0], whole, key, 0.0) for key in DISTORTION}

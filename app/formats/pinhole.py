@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -13,11 +12,6 @@ from imitation.errors import InputError
 Array = NDArray[np.float64]
 
 CENTRE = 0.5  # their pixel coordinate of the centre of the top-left pixel
-
-
-def natural(name: str) -> tuple[tuple[int, int | str], ...]:
-    """Sort key under which frame_2 comes before frame_10."""
-    return tuple((0, int(part)) if part.isdigit() else (1, part) for part in re.split(r"(\d+)", name) if part)
 
 
 def intrinsics(fx: float, fy: float, cx: float, cy: float, where: str) -> Array:

@@ -23,7 +23,7 @@ class Alignment:
     Attributes
     ----------
     scale : factor. rotation : degrees about the world's x, y, z, in this order. translation : metres.
-    up, front_degrees : how the mesh lies in its file: its up axis and a turn about it.
+    up : axis of the mesh's file that points up.
     """
 
     fitted: bool = True
