@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from app.formats.atomic import replacing
-from app.formats.images import read_bytes
-from app.formats.images import natural_key
+from app.formats.images import natural_key, read_bytes
 from app.formats.pinhole import Array, intrinsics, lost, parameters
 from app.formats.ply import read_ply, write_ply
 from imitation.cameras import CameraPath
