@@ -10,6 +10,8 @@ from tvmedit.features.heading import SHOE, TRAVEL_SPEED
 Array = NDArray[np.float64]
 LONGER = 1.2
 """Median length over height (standard deviations of the surface) from which a body counts as long."""
+HEAD = 0.95
+"""What lies above this quantile of the height is taken for the head."""
 SLENDER = 1.7
 """Median length over width; a person with outstretched arms stays below ``LONGER``."""
 
@@ -18,7 +20,7 @@ def lengthwise_cues(samples: NDArray[np.floating], height: float, fps: float) ->
     """Unit cues of the length of ``SHOE`` bodies along the body, or None for a body that is not long.
 
     The long axis of the surface's shadow on the ground, its sense carried from frame to frame. Which end is the front
-    is said by the travel; where there is little of it, by the higher end, where a head is carried.
+    is said by the travel; where there is little of it, by the highest points, which belong to the head.
 
     Parameters
     ----------
@@ -50,5 +52,6 @@ def lengthwise_cues(samples: NDArray[np.floating], height: float, fps: float) ->
         forward = float((velocity * axis).sum(axis=1)[fast].sum())
     if abs(forward) < TRAVEL_SPEED * fps * 0.2:
         along = np.einsum("npi,ni->np", ground, axis)
-        forward = float((along**3 * centred[:, :, 2]).sum())
+        top = np.quantile(centred[:, :, 2], HEAD, axis=1)
+        forward = float(np.where(centred[:, :, 2] >= top[:, None], along, 0.0).sum())
     return np.asarray(SHOE * np.where(forward < 0, -1.0, 1.0) * axis)

@@ -6,12 +6,15 @@ from typing import Literal
 
 import attrs
 import numpy as np
+from numpy.typing import NDArray
 
 from app.formats.meshfile import Up
 from app.formats.tvm.frames import MeshFrames
 
 FPS = 25.0
 LOOKED_AT = 5
+STANDING = 1.6
+"""Height over depth from which a body is taken to stand along z."""
 PERSON = 1.7
 """Metres."""
 
@@ -39,7 +42,7 @@ def guess_facts(
 ) -> Guess:
     """Take what the user says, else what the files say, else guess.
 
-    Up: the axis, y or z, whose lower end stays at one level and along which the body is long. Unit: metres,
+    Up: y as most programs have it, or z where the body is more than 1.6 times as long along it. Unit: metres,
     centimetres or millimetres, whichever brings the body nearest to a person's height.
     """
     guessed: list[Literal["fps", "up", "unit"]] = []
@@ -66,12 +69,10 @@ def guess_facts(
     return Guess(float(rate), axis, float(metres), tuple(guessed), why)
 
 
-def _up(ends: np.ndarray) -> Up:
+def _up(ends: NDArray[np.float64]) -> Up:
+    """Y as most programs have it, unless the body stands along z: an animal may be longer than it is high."""
     extents = np.median(ends[:, 1] - ends[:, 0], axis=0)
-    # A floor that does not move speaks for an axis as much as height does.
-    wander = np.ptp(ends[:, 0], axis=0) / np.maximum(extents, 1e-12)
-    score = extents / max(float(extents.max()), 1e-12) - 0.5 * np.minimum(wander, 1.0)
-    return "y" if score[1] > score[2] else "z"
+    return "z" if extents[2] > STANDING * extents[1] else "y"
 
 
 def _unit(height: float) -> tuple[float, str]:
