@@ -58,7 +58,7 @@ def base(document: Document, character: Character) -> Stage:
     label = f"Moving {character.name}"
     blocked = NO_PAIRS if len(paired) < 3 else None
     seconds = 0.05 * (document.clip.frame_count if document.clip else 1)
-    return Stage(f"base/{character.id}", label, _base, inputs, needs, blocked=blocked, weight=seconds)
+    return Stage(f"base/{character.id}", label, _base, inputs, needs, blocked=blocked, version=2, weight=seconds)
 
 
 @once

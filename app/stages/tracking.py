@@ -57,7 +57,7 @@ def spans(document: Document, track: Track) -> tuple[Stage, ...]:
             _span,
             (clip, track.mode, plan),
             needs,
-            version=2,
+            version=3,
             weight=0.004 * (plan.last - plan.first),
         )
         for plan in plans

@@ -32,7 +32,7 @@ def energy(  # type: ignore[no-untyped-def]
             for axis in range(3):
                 squared += (depths[t, i] * directions[t, i, axis] - depths[t, j] * directions[t, j, axis]) ** 2
             residual = np.sqrt(squared) - lengths[p]
-            total += np.log(1 + pair_weight[p] * residual * residual)
+            total += np.log(1 + pair_weight[t, p] * residual * residual)
     return total
 
 
@@ -42,7 +42,7 @@ def normal_equations(  # type: ignore[no-untyped-def]
 ):
     """Fill the lower band (2 k + 1, n k) of the Gauss-Newton matrix and half the gradient (n k,).
 
-    depths (n, k); centres (n, 3); directions (n, k, 3); pairs (p, 2); lengths, pair_weight (p,);
+    depths (n, k); centres (n, 3); directions (n, k, 3); pairs (p, 2); lengths (p,); pair_weight (n, p);
     acceleration_weight (n - 2, k); target, weight (n, k). Unknowns are ordered frame by frame.
     """
     count, keys = depths.shape
@@ -82,7 +82,7 @@ def normal_equations(  # type: ignore[no-untyped-def]
             length = max(np.sqrt(squared), 1e-9)
             slope_i, slope_j = slope_i / length, slope_j / length
             residual = length - lengths[p]
-            w = pair_weight[p] / (1 + pair_weight[p] * residual * residual)
+            w = pair_weight[t, p] / (1 + pair_weight[t, p] * residual * residual)
             low, high = min(i, j), max(i, j)
             gradient[t * keys + i] += w * slope_i * residual
             gradient[t * keys + j] += w * slope_j * residual

@@ -67,7 +67,10 @@ class Lift:
 
 @attrs.frozen(eq=False)
 class LiftProblem:
-    """The energy's data, lengths in diagonals: what `minimise` needs to find depths (n, k)."""
+    """The energy's data, lengths in diagonals: what `minimise` needs to find depths (n, k).
+
+    ``doubt`` (n, p) is the variance that the tracks' own errors add to the distance of each pair.
+    """
 
     centres: Array
     directions: Array
@@ -75,6 +78,7 @@ class LiftProblem:
     lengths: Array
     target: Array
     weight: Array
+    doubt: Array
 
     def points(self, depths: Array) -> Array:
         """Places (n, k, 3) of depths (n, k)."""
@@ -92,6 +96,7 @@ def lift_tracks(
     anchors: Array | None = None,
     prior: Array | None = None,
     start: Array | None = None,
+    spread: Array | None = None,
     settings: LiftSettings | None = None,
     progress: Progress | None = None,
 ) -> Lift:
@@ -107,6 +112,8 @@ def lift_tracks(
     anchors : (n, k) depths that are known (contacts, edits), NaN elsewhere; frame 0 is always known.
     prior : (n, k) depths of an earlier deformation, NaN where none.
     start : (n, k) depths to start from; default those of frame 0, moved with the anchors.
+    spread : (n, k) how far each 2D track may be off, standard deviation, pixels; None for exact tracks. Distances to a
+        doubtful point say so much less, so that a wrong track does not take its neighbours along.
 
     Raises
     ------
@@ -122,7 +129,7 @@ def lift_tracks(
         raise InputError("A key point is behind the camera in frame 0; align the character with the subject.")
     known = np.full(pixels.shape[:2], np.nan) if anchors is None else anchors.copy()
     known[0] = first
-    problem = _problem(pixels, cameras, rest, pairs, diagonal, known, prior, settings)
+    problem = _problem(pixels, cameras, rest, pairs, diagonal, known, prior, settings, spread)
     depths = (starting_depths(known) if start is None else start) / diagonal
     lengths = np.maximum(problem.lengths, 1e-6)
     stretch = settings.stretch * lengths
@@ -181,7 +188,7 @@ def minimise(
         problem.directions,
         problem.pairs,
         problem.lengths,
-        1 / stretch**2,
+        1 / (stretch**2 + problem.doubt),
         1 / acceleration**2,
         problem.target,
         problem.weight,
@@ -222,6 +229,7 @@ def _problem(
     known: Array,
     prior: Array | None,
     settings: LiftSettings,
+    spread: Array | None = None,
 ) -> LiftProblem:
     centres, directions = rays_of(cameras, pixels)
     lengths = np.linalg.norm(rest[pairs[:, 0]] - rest[pairs[:, 1]], axis=1) / diagonal
@@ -232,7 +240,12 @@ def _problem(
             target[present] += depths[present] / diagonal / deviation**2
             weight[present] += 1 / deviation**2
     target[weight > 0] /= weight[weight > 0]
-    return LiftProblem(centres / diagonal, directions, pairs, lengths, target, weight)
+    doubt = np.zeros((len(pixels), len(pairs)))
+    if spread is not None:
+        focal = np.sqrt(cameras.K[:, 0, 0] * cameras.K[:, 1, 1])[:, None]
+        size = (spread * known[0] / focal / diagonal) ** 2
+        doubt = size[:, pairs[:, 0]] + size[:, pairs[:, 1]]
+    return LiftProblem(centres / diagonal, directions, pairs, lengths, target, weight, doubt)
 
 
 def _estimate_stretch(problem: LiftProblem, depths: Array, settings: LiftSettings) -> Array:
@@ -240,7 +253,8 @@ def _estimate_stretch(problem: LiftProblem, depths: Array, settings: LiftSetting
     points = problem.points(depths)
     length = np.linalg.norm(points[:, problem.pairs[:, 0]] - points[:, problem.pairs[:, 1]], axis=2)
     expected = settings.stretch * np.maximum(problem.lengths, 1e-6)
-    residual = ((length - problem.lengths) ** 2).sum(axis=0)
+    share = expected**2 / (expected**2 + problem.doubt)
+    residual = (share * (length - problem.lengths) ** 2).sum(axis=0)
     estimate = np.sqrt((settings.trust * expected**2 + residual) / (settings.trust + len(depths)))
     bounded: Array = np.clip(estimate, 0.3 * expected, 10 * expected)
     return bounded

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 Method = Literal["joint", "paper"]
 OnFrame = Callable[[int, Array], None]
 FREE, MIRRORED = 0.02, 0.9
+DOUBT = 30.0
+"""Pixels that a track without any confidence may be off, as distances between key points see it."""
 SOFT = 0.999
 """Softness of a key point held by its track: a small give, so that a wrong track does not tear the mesh."""
 SAME = 1e-3
@@ -178,7 +180,10 @@ def _solve_joint(
     size = diagonal(vertices)
     pairs = key_pairs(vertices, faces, keys.vertices)
     anchors = np.where(keys.planted, depths_of(cameras, keys.places), np.nan)
-    first = lift_tracks(keys.pixels, cameras, keys.start, pairs, size, anchors=anchors, settings=settings)
+    spread = np.where(keys.planted, 0.0, DOUBT * (1 - keys.confidence))
+    first = lift_tracks(
+        keys.pixels, cameras, keys.start, pairs, size, anchors=anchors, spread=spread, settings=settings
+    )
     clock.lap("lifting")
     posed = _deform_on_rays(keys, cameras, deformer, pose, first.points, part(progress, 0.05, 0.9))
     prior = depths_of(cameras, posed[:, keys.vertices])
@@ -186,7 +191,7 @@ def _solve_joint(
     clock.lap("depth prior")
     second = lift_tracks(
         keys.pixels, cameras, keys.start, pairs, size,
-        anchors=anchors, prior=prior, start=first.depths, settings=settings,
+        anchors=anchors, prior=prior, start=first.depths, spread=spread, settings=settings,
     )  # fmt: skip
     noise = pixel_noise(second.points, cameras, keys.observed & ~keys.planted)
     held = np.zeros(keys.planted.shape, bool)

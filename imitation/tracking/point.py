@@ -58,7 +58,8 @@ def _solve(clip: PreparedClip, plan: SpanPlan, options: Options, progress: Progr
         chain = solve_paper(clip, order, start[1:], end, options, progress)
     else:
         chain = solve_robust(clip, order, start[1:], end, options, progress)
-    return judge(plan, chain, (clip.height, clip.width), isinstance(options, RobustOptions))
+    masked = clip.masks is not None
+    return judge(plan, chain, (clip.height, clip.width), isinstance(options, RobustOptions), masked)
 
 
 def track_span(

@@ -64,6 +64,28 @@ def test_anchors_and_frame_0_are_kept(solved) -> None:
     np.testing.assert_allclose(lift.depths[0], depths_of(cameras, points)[0], atol=1e-3)
 
 
+def test_doubtful_rays_do_not_take_their_neighbours_along(solved) -> None:
+    """Rays 30 px off in some frames, known to be doubtful, move the others' depths far less than believed ones do."""
+    points, cameras, pixels, anchors, lift = solved
+    wrong, spread = pixels.copy(), np.zeros(pixels.shape[:2])
+    wrong[20:26, 4] += (30.0, 0.0)
+    spread[20:26, 4] = 30.0
+    others = [0, 1, 2, 3]
+    believed, doubted = (
+        lift_tracks(wrong, cameras, points[0], PAIRS, 1.0, anchors=anchors, spread=given) for given in (None, spread)
+    )
+    moved = [np.abs(made.depths - lift.depths)[:, others].max() for made in (believed, doubted)]
+    assert moved[1] < 0.02
+    assert moved[1] < 0.5 * moved[0]
+
+
+def test_tracks_without_doubt_are_lifted_as_exact_ones(solved) -> None:
+    """A spread of nothing gives the same bits as none."""
+    points, cameras, pixels, anchors, lift = solved
+    same = lift_tracks(pixels, cameras, points[0], PAIRS, 1.0, anchors=anchors, spread=np.zeros(pixels.shape[:2]))
+    np.testing.assert_array_equal(same.depths, lift.depths)
+
+
 def test_lifting_scales_with_the_world(solved) -> None:
     """The unit of length does not matter: a world ten times as large has depths ten times as large."""
     points, cameras, pixels, anchors, lift = solved
@@ -81,7 +103,7 @@ def test_gradient_is_that_of_the_energy(solved) -> None:
     )
     arguments = (
         problem.centres, problem.directions, problem.pairs, problem.lengths,
-        1 / stretch**2, 1 / acceleration**2, problem.target, problem.weight,
+        1 / (stretch**2 + problem.doubt), 1 / acceleration**2, problem.target, problem.weight,
     )  # fmt: skip
     depths = depths + 0.01 * np.random.default_rng(1).normal(size=depths.shape)
     band, gradient = np.zeros((11, depths.size)), np.zeros(depths.size)

@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from imitation.tracking import prepare_clip, track_point
+from imitation.tracking.chain import Chain
 from imitation.tracking.flow import PairFlow
+from imitation.tracking.judge import judge
 from imitation.tracking.subject import cut_out, plain_grey, subject_flow
+from imitation.tracking.track import SpanPlan
 from tests.imitation.tracking.worlds import Texture, picture
 
 
@@ -83,3 +86,14 @@ def test_flow_of_the_subject_alone(world) -> None:
     nothing = subject_flow(PairFlow(), grey, grey, np.zeros(grey.shape, bool))
     assert not nothing[0].any()
     assert not nothing[1].any()
+
+
+def test_confidence_falls_where_the_subject_does_not_look_like_the_clicks() -> None:
+    """With masks a frame that looks unlike the clicks is doubted, at the same cost of the span."""
+    flat = np.zeros(21)
+    likeness = np.where(np.arange(21) < 10, 0.95, 0.4)
+    chain = Chain(np.full((21, 2), 50.0), flat + 0.1, likeness, flat, flat, flat.astype(bool))
+    span = judge(SpanPlan((0, 50.0, 50.0), (20, 50.0, 50.0), 0, 20), chain, (100, 100), True, masked=True)
+    assert span.confidence[8] > 0.9
+    assert span.confidence[12] < 0.75
+    assert span.confidence[[0, 20]].tolist() == [1, 1]
