@@ -72,6 +72,12 @@ COMMANDS = (
     Command("next_track", "Next point", ("Tab",), "View"),
     Command("ghosts", "Ghosts of neighbouring frames", ("G",), "View"),
     Command("overlay", "Show or hide the marks", ("O",), "View"),
+    Command("layer_paths", "Paths", ("Alt+1",), "View"),
+    Command("layer_masks", "Masks", ("Alt+2",), "View"),
+    Command("layer_onion", "Neighbouring masks", ("Alt+3",), "View"),
+    Command("layer_names", "Names", ("Alt+4",), "View"),
+    Command("layer_camera", "Points that the cameras were solved from", ("Alt+5",), "View"),
+    Command("layer_grid", "Grid on the ground, horizon", ("Alt+6",), "View"),
     Command("look_camera", "Look through the camera", ("1",), "View"),
     Command("look_side", "Look from the side", ("2",), "View"),
     Command("look_orbit", "Orbit", ("3",), "View"),
@@ -81,6 +87,7 @@ COMMANDS = (
     Command("tool_lasso", "Lasso", ("M",), "Tools"),
     Command("tool_point", "Point", ("P",), "Tools"),
     Command("tool_contact", "Contact", ("C",), "Tools"),
+    Command("tool_ground", "Ground and scale", ("B",), "Tools"),
     Command("tool_pan", "Pan", ("H",), "Tools"),
 )
 

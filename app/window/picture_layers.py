@@ -12,8 +12,10 @@ from app.model.document import Document
 from app.model.tracks import Track
 from app.model.values import KeyMask
 from app.window import theme
-from app.window.canvas import GhostPath, Outline, OutlineLayer, Overlay, PointCloudLayer, TrackLayer, TrackMark
+from app.window.camera_evidence import evidence, ground_grid, horizon
+from app.window.canvas import GhostPath, GroundGrid, Outline, OutlineLayer, Overlay, ScenePoints, TrackLayer, TrackMark
 from app.window.canvas.hits import GRAB, nearest_point
+from app.window.canvas.overlays import FUTURE, PAST
 from app.window.project import Project
 from app.window.reading import Reading
 
@@ -25,7 +27,9 @@ class Shown:
     """What is drawn, and what is under way with the mouse.
 
     mask_part : the part of this frame's mask that is selected (``video.mask_editing``); mask_moving the mask as it is
-        being dragged. subtracting : the line being drawn takes away.
+        being dragged. subtracting : the line being drawn takes away. choosing : points of the scene are being chosen.
+    picked : the chosen ones, as indices of the cameras' points; picked_tracks the ids of chosen tracks.
+        before : the paths of tracks that are being solved again, compared those of tracks that just were.
     """
 
     paths: bool = True
@@ -34,6 +38,10 @@ class Shown:
     names: bool = True
     marks: bool = True
     onion: bool = False
+    grid: bool = False
+    choosing: bool = False
+    picked: tuple[int, ...] = ()
+    picked_tracks: tuple[str, ...] = ()
     hovered: str = ""
     mask_part: str = ""
     mask_moving: KeyMask | None = None
@@ -41,6 +49,7 @@ class Shown:
     dragged: tuple[str, tuple[float, float]] | None = None
     drawing: tuple[tuple[float, float], ...] = ()
     before: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    compared: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 def colour_of(track: Track) -> str:
@@ -65,7 +74,7 @@ def track_marks(project: Project, reading: Reading, frame: int, shown: Shown) ->
                 known.positions,
                 HIDDEN_STATES.get(word, "seen"),
                 clicked=frame in track.clicks,
-                selected=track.id == project.track_id,
+                selected=track.id in (project.track_id, *shown.picked_tracks),
                 contact=any(frame in contact.span for contact in track.contacts),
                 place=shown.dragged[1] if shown.dragged and shown.dragged[0] == track.id else None,
             )
@@ -78,12 +87,15 @@ def layers(project: Project, marks: tuple[TrackMark, ...], frame: int, shown: Sh
     made: list[Overlay] = []
     if not shown.marks:
         return made
-    if shown.camera:
-        made.append(_inliers(project, frame))
+    if shown.grid:
+        made += _grid(project, frame)
+    if shown.camera or shown.choosing:
+        made.append(_scene_points(project, frame, shown))
     if shown.masks or shown.drawing:
         made.append(_masks(project, frame, shown))
-    tracks = [track for track in project.document.tracks if track.visible and track.id in shown.before]
-    made += [GhostPath(shown.before[track.id], colour_of(track)) for track in tracks]
+    old = {**shown.compared, **shown.before}
+    tracks = [track for track in project.document.tracks if track.visible and track.id in old]
+    made += [GhostPath(_around(old[track.id], frame), colour_of(track)) for track in tracks]
     made.append(TrackLayer(marks, frame, shown.paths, shown.names, shown.hovered))
     return made
 
@@ -107,6 +119,11 @@ def _masks(project: Project, frame: int, shown: Shown) -> OutlineLayer:
         if masks is not None:
             made += [Outline(points, "between") for points in outline(masks[frame])]
     return OutlineLayer(tuple(made), shown.drawing, shown.subtracting)
+
+
+def _around(path: NDArray[np.float64], frame: int) -> NDArray[np.float64]:
+    """As much of an old path (n, 2) as is shown of the new one of a chosen track."""
+    return path[max(frame - 2 * PAST, 0) : frame + 2 * FUTURE + 1]
 
 
 def _part(name: str) -> tuple[str, int, int]:
@@ -136,12 +153,32 @@ def outline(mask: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
     return [line[:, 0].astype(np.float64) for line in found if len(line) >= 8]
 
 
-def _inliers(project: Project, frame: int) -> PointCloudLayer:
+def _scene_points(project: Project, frame: int, shown: Shown) -> ScenePoints:
+    found = evidence(project.result(project.session.stages.cameras), frame)
+    return ScenePoints(found.places, found.residuals, np.isin(found.index, shown.picked))
+
+
+def missing_evidence(project: Project, layer: str) -> str:
+    """Why a layer of evidence shows nothing; empty where it shows something."""
     path = project.result(project.session.stages.cameras)
-    if path is None or not len(path.observations):
-        return PointCloudLayer()
-    rows = path.observations
-    return PointCloudLayer(rows[rows[:, 0] == frame, 1:])
+    if path is None:
+        return "The cameras have not been solved yet: run what is missing."
+    if layer == "camera":
+        return "" if len(path.points) else "These cameras came without points of the scene."
+    world = project.result(project.session.stages.world)
+    if world is None:
+        return "The ground has not been laid yet: run what is missing."
+    return "No ground is known: a constant depth is assumed." if world.depth is not None else ""
+
+
+def _grid(project: Project, frame: int) -> list[Overlay]:
+    world, clip = project.result(project.session.stages.world), project.document.clip
+    if world is None or clip is None or world.depth is not None or frame >= len(world.cameras):
+        return []
+    camera, size = world.camera(frame), (clip.width, clip.height)
+    lines, step = ground_grid(camera, world.offset, size)
+    cell = f"a cell is {step:g} m" if world.metric else f"a cell is {step:g} units, the scale is unknown"
+    return [GroundGrid(tuple(lines), horizon(camera, size), cell if lines else "")]
 
 
 def track_at(marks: tuple[TrackMark, ...], frame: int, place: tuple[float, float], scale: float) -> str:

@@ -186,6 +186,26 @@ class LassoGesture:
         return Cancelled()
 
 
+@dataclass
+class PickGesture(LassoGesture):
+    """Choose things: a click chooses one, a line drawn round them chooses all inside."""
+
+    slack: float = 6.0
+    _from: Place = (0.0, 0.0)
+
+    def press(self, place: Place) -> Event | None:
+        """Remember where; a line is seen once the mouse moves."""
+        self._from, self._points = place, [place]
+        return None
+
+    def release(self, place: Place) -> Event | None:
+        """A click where the mouse hardly moved, else the closed line."""
+        if math.dist(place, self._from) <= self.slack and len(self._points) < 4:
+            self._points = []
+            return Placed(self._from)
+        return super().release(place)
+
+
 def _area(points: tuple[Place, ...]) -> float:
     following = (*points[1:], points[0])
     return 0.5 * sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, following, strict=True))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -80,7 +80,7 @@ class TrackLayer:
         reach = 2 if track.selected else 1
         first, last = max(self.frame - PAST * reach, 0), min(self.frame + FUTURE * reach, len(track.positions) - 1)
         for begin, end, dash in ((first, self.frame, False), (self.frame, last, True)):
-            line = _line(view.to_widget(track.positions[begin : end + 1]))
+            line = path_through(view.to_widget(track.positions[begin : end + 1]))
             marks.stroke(painter, line, colour, 2.2 if track.selected else 1.6, dash)
 
     def _point(self, painter: QPainter, view: View, track: TrackMark) -> None:
@@ -120,7 +120,7 @@ class TrackLayer:
                 return
 
 
-def _line(points: NDArray[np.float64]) -> QPainterPath:
+def path_through(points: NDArray[np.float64]) -> QPainterPath:
     """A path through points (n, 2); a NaN row breaks it."""
     path, down = QPainterPath(), False
     for x, y in points.tolist():
@@ -135,25 +135,6 @@ def _line(points: NDArray[np.float64]) -> QPainterPath:
 
 
 @dataclass(frozen=True)
-class PointCloudLayer:
-    """Small dots over the picture, such as the background points that a camera was solved from."""
-
-    places: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 2)))
-    colour: str = "ok"
-
-    def paint(self, painter: QPainter, view: View, size: tuple[int, int]) -> None:
-        """Draw the dots in two passes."""
-        placed = view.to_widget(self.places)
-        inside = (placed >= 0).all(1) & (placed[:, 0] < size[0]) & (placed[:, 1] < size[1])
-        dots = marks.polygon(placed[inside])
-        for colour, width in ((marks.UNDERLAY, 5.0), (theme.active().colour(self.colour), 2.8)):
-            pen = QPen(colour, width)
-            pen.setCapStyle(Qt.PenCapStyle.RoundCap)
-            painter.setPen(pen)
-            painter.drawPoints(dots)
-
-
-@dataclass(frozen=True)
 class GhostPath:
     """The path a track had before a correction, thin and dashed, while the new one is being solved."""
 
@@ -163,4 +144,4 @@ class GhostPath:
     def paint(self, painter: QPainter, view: View, size: tuple[int, int]) -> None:
         """Draw the old path."""
         colour = theme.active().colour(self.colour, 150)
-        marks.stroke(painter, _line(view.to_widget(self.positions)), colour, 1.2, dash=True)
+        marks.stroke(painter, path_through(view.to_widget(self.positions)), colour, 1.2, dash=True)

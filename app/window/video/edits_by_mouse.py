@@ -84,6 +84,8 @@ def delete(project: Project, frame: int, part: str = "") -> None:
 
 def keep_old_paths(shown: Shown, reading: Reading, before: Document, after: Document) -> None:
     """Remember the paths of tracks whose clicks change, to show them until the new ones are there."""
+    if before.tracks is not after.tracks:
+        shown.compared = {}
     was = {track.id: track for track in before.tracks}
     kept = dict(shown.before)
     for track in after.tracks:
@@ -97,7 +99,10 @@ def keep_old_paths(shown: Shown, reading: Reading, before: Document, after: Docu
 
 
 def drop_old_paths(shown: Shown, reading: Reading, project: Project) -> None:
-    """Forget old paths of tracks that are solved again."""
+    """Once a track is solved again its old path is only compared with: thin, until the next edit or another choice."""
     if shown.before:
         done = {track.id for track in project.document.tracks if reading.track(track).complete}
+        shown.compared = {**shown.compared, **{name: path for name, path in shown.before.items() if name in done}}
         shown.before = {track_id: path for track_id, path in shown.before.items() if track_id not in done}
+    if shown.compared and project.track_id not in shown.compared:
+        shown.compared = {}

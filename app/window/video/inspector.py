@@ -14,8 +14,12 @@ from app.window.controls import Chip, Elided, Meter, Row, ScrollColumn, Swatches
 from app.window.lanes_of import DOUBT
 from app.window.project import Project
 from app.window.reading import KnownTrack
+from app.window.video.confidence_strip import ConfidenceStrip
+from app.window.video.point_list import PointList
 
 SHOWN_SPANS = 4
+EMPTY = "No points yet: press P and click a place on the subject that can be recognised."
+NOTHING = "Choose a point here, in the picture or in the timeline, or add one with the Point tool."
 
 
 class TrackInspector(ScrollColumn):
@@ -27,11 +31,13 @@ class TrackInspector(ScrollColumn):
         super().__init__()
         self.project: Project | None = None
         self.track: Track | None = None
-        self.nothing = label(
-            "Choose a point in the picture or in the timeline, or add one with the Point tool.", "label"
-        )
+        self.nothing = label(EMPTY, "label")
         self.nothing.setWordWrap(True)
         self.rows.addWidget(self.nothing)
+        self.list = PointList()
+        self.rows.addWidget(self.list)
+        self.list.hidden.connect(self._toggle_row)
+        self.list.recoloured.connect(self._recolour_row)
         self.body = QWidget()
         column = QVBoxLayout(self.body)
         column.setContentsMargins(0, 0, 0, 0)
@@ -49,6 +55,9 @@ class TrackInspector(ScrollColumn):
         meter = Row("Confidence", self.meter)
         meter.layout().addWidget(self.sure)
         column.addWidget(meter)
+        self.strip = ConfidenceStrip()
+        self.strip.go.connect(self.go)
+        column.addWidget(self.strip)
         column.addWidget(separator())
         self.table = SpanTable()
         self.table.go.connect(self.go)
@@ -97,6 +106,7 @@ class TrackInspector(ScrollColumn):
         sure = float(known.confidence[frame]) if frame < len(known.confidence) else 0.0
         self.meter.show_value(sure, "ok" if sure >= DOUBT else "warn", DOUBT)
         self.sure.setText(f"{sure:.2f}" if known.state[frame] else "–")
+        self.strip.show_track(known, tuple(track.clicks), frame)
         self.table.show_spans(project, track, frame)
         clicked = frame in track.clicks
         hidden = any(frame in interval for interval in track.occluded)
@@ -109,6 +119,27 @@ class TrackInspector(ScrollColumn):
         self.contact.setText("No contact here" if planted else "Contact here")
         self.visible_.setText("Do not draw" if track.visible else "Draw again")
         self.suggest.setEnabled(known.complete)
+
+    def show_points(self, rows: list[tuple[Track, KnownTrack]]) -> None:
+        """Show the list of all points, where none is chosen."""
+        self.list.setVisible(self.track is None and bool(rows))
+        if self.track is None:
+            self.nothing.setText(NOTHING if rows else EMPTY)
+            self.list.show_points(rows)
+
+    def _row(self, track_id: str) -> Track | None:
+        tracks = self.project.document.tracks if self.project is not None else ()
+        return next((each for each in tracks if each.id == track_id), None)
+
+    def _toggle_row(self, track_id: str) -> None:
+        track = self._row(track_id)
+        if track is not None and self.project is not None:
+            self.project.edit(tracks.set_track_look, track_id, visible=not track.visible)
+
+    def _recolour_row(self, track_id: str) -> None:
+        track = self._row(track_id)
+        if track is not None and self.project is not None:
+            self.project.edit(tracks.set_track_look, track_id, colour=(track.colour + 1) % tracks.COLOURS)
 
     def _frame(self) -> int:
         return self.project.frame if self.project else 0

@@ -47,6 +47,7 @@ def steps(project: Project) -> list[Step]:
         made.append(Step("Camera", text.get(path.verdict, "failed"), worst))
     else:
         made.append(Step("Camera", _words(state), _state(state)))
+    made.append(_ground(project))
     if document.characters:
         character = document.character(project.character_id) if project.character_id else document.characters[0]
         pairs = len(character.pairs)
@@ -71,6 +72,22 @@ def _points(project: Project) -> Step:
     return Step("Points", f"{fresh} of {len(states)} followed", state)
 
 
+def _ground(project: Project) -> Step:
+    """Where contacts lie: solved, chosen, or to be assumed because the camera shows no parallax."""
+    stages = project.session.stages
+    world, path = project.result(stages.world), project.result(stages.cameras)
+    if world is None:
+        state = project.state(stages.world)
+        return Step("Ground", _words(state), _state(state))
+    scale = "in metres" if world.metric else "scale unknown"
+    if world.grounded:
+        return Step("Ground", f"laid, {scale}", "done")
+    flat = path is not None and path.verdict in ("static", "rotation") and project.document.world.ground == "local"
+    return Step(
+        "Ground", "no parallax: choose one" if flat else f"constant depth, {scale}", "optional" if flat else "done"
+    )
+
+
 def _state(state: str) -> str:
     known = {"fresh": "done", "running": "running", "stale": "stale", "failed": "failed"}
     return known.get(state, "todo")
@@ -82,9 +99,10 @@ def _words(state: str) -> str:
 
 
 class StepList(QWidget):
-    """Shows the steps; ``run`` asks for everything that is missing."""
+    """Shows the steps; ``run`` asks for everything that is missing, ``ground`` for the choice of ground and scale."""
 
     run = Signal()
+    ground = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -96,6 +114,8 @@ class StepList(QWidget):
         self.button = button("Run what is missing", self.run.emit, primary=True, name="run")
         self._column.addSpacing(4)
         self._column.addWidget(self.button)
+        self.ground_button = button("Choose ground and scale", self.ground.emit, name="ground")
+        self._column.addWidget(self.ground_button)
 
     def show_steps(self, steps_: list[Step]) -> None:
         """Show the steps as they stand."""

@@ -6,16 +6,17 @@ from typing import Literal
 
 from app.model.values import KeyMask
 from app.window.canvas import TrackMark
-from app.window.canvas.gestures import DragGesture, Gesture, LassoGesture, PlaceGesture
+from app.window.canvas.gestures import DragGesture, Gesture, LassoGesture, PickGesture, PlaceGesture
 from app.window.picture_layers import track_at
 from app.window.video import mask_editing
 
-Tool = Literal["select", "lasso", "point", "contact", "pan"]
+Tool = Literal["select", "lasso", "point", "contact", "ground", "pan"]
 TOOLS: tuple[tuple[Tool, str, str], ...] = (
     ("select", "Select", "V"),
     ("lasso", "Lasso", "M"),
     ("point", "Point", "P"),
     ("contact", "Contact", "C"),
+    ("ground", "Ground", "B"),
     ("pan", "Pan", "H"),
 )
 HINTS: dict[str, str] = {
@@ -23,6 +24,7 @@ HINTS: dict[str, str] = {
     "lasso": "Draw round the subject, roughly. Shift adds, Alt takes away; corners and edges can be pulled.",
     "point": "Click a place on the subject that can be recognised: it is followed through the clip.",
     "contact": "Click a point where it begins to stand on the ground, then click it again in the last such frame.",
+    "ground": "Click recovered points or draw round them, for the ground or a length. Shift adds, Alt removes.",
     "pan": "Drag to move the picture.",
 }
 
@@ -46,6 +48,9 @@ def gesture_for(
         if part and key is not None and not (adding or subtracting):
             return mask_editing.drag_of(key, part, place, scale)
         return LassoGesture("subtract" if subtracting else "add" if adding else "new", 3.0 / scale, 60.0 / scale)
+    if tool == "ground":
+        mode = "subtract" if subtracting else "add" if adding else "new"
+        return PickGesture(mode, 3.0 / scale, 60.0 / scale, 5.0 / scale)
     track = track_at(marks, frame, place, scale)
     mark = next((each for each in marks if each.name == track), None)
     if mark is not None:

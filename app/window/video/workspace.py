@@ -6,26 +6,37 @@ from collections.abc import Callable
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QWidget
 
 from app.actions import proposing
 from app.model.document import Document
 from app.model.values import KeyMask
+from app.window import settings
 from app.window.canvas import Canvas
 from app.window.canvas.gestures import Cancelled, Chosen, Drawing, Drawn, Gesture, Moved, Moving, Placed
-from app.window.controls import ErrorBar, Panel, button, icon_button, label, toggle, tool
+from app.window.controls import ErrorBar, Panel, icon_button, label, toggle, tool
 from app.window.frames import FrameLoader
-from app.window.picture_layers import Shown, layers, track_at, track_marks
+from app.window.picture_layers import Shown, layers, missing_evidence, track_at, track_marks
 from app.window.picture_notes import PictureNotes
 from app.window.project import Project
 from app.window.reading import Reading
-from app.window.video import edits_by_mouse
-from app.window.video.inspector import TrackInspector
+from app.window.video import edits_by_mouse, scene_picking
 from app.window.video.mask_editing import is_part, moved
 from app.window.video.point_windows import PointWindows, Window, window_frames
 from app.window.video.proposals import ContactProposals
-from app.window.video.steps import StepList, steps
+from app.window.video.right_column import RightColumn
+from app.window.video.steps import steps
 from app.window.video.tools import HINTS, TOOLS, Tool, gesture_for
+
+LAYERS = (
+    ("paths", "paths", "Paths"),
+    ("masks", "masks", "Masks"),
+    ("onion", "onion", "Onion skin"),
+    ("names", "labels", "Names"),
+    ("camera", "camera", "Camera"),
+    ("grid", "grid", "Ground"),
+)
+"""What can be drawn over the picture and is remembered between runs: name, icon, text."""
 
 
 class VideoWorkspace(QWidget):
@@ -41,6 +52,9 @@ class VideoWorkspace(QWidget):
         self.reading: Reading | None = None
         self.loader: FrameLoader | None = None
         self.shown = Shown(names=False)
+        for name, _, _ in LAYERS:
+            stored = settings.settings().value(f"video/{name}")
+            setattr(self.shown, name, getattr(self.shown, name) if stored is None else str(stored).lower() == "true")
         self.frame = 0
         self.tool: Tool = "select"
         self.proposals = ContactProposals()
@@ -51,7 +65,8 @@ class VideoWorkspace(QWidget):
         row.setSpacing(8)
         row.addWidget(self._strip())
         row.addWidget(self._middle(), 1)
-        row.addWidget(self._right())
+        self.right = self._right()
+        row.addWidget(self.right)
         self._choose_tool("select")
 
     # building ----------------------------------------------------------------------------------------------------
@@ -75,22 +90,20 @@ class VideoWorkspace(QWidget):
     def _middle(self) -> Panel:
         self.panel = Panel("Video", " ")
         bar = self.panel.header.row
-        self.paths_button = toggle("paths", "Paths", lambda on: self._switch("paths", on), on=True)
-        self.masks_button = toggle("masks", "Masks", lambda on: self._switch("masks", on), on=True)
-        self.onion_button = toggle("onion", "Onion skin", lambda on: self._switch("onion", on))
-        self.names_button = toggle("labels", "Names", lambda on: self._switch("names", on))
-        self.camera_button = toggle("camera", "Camera", lambda on: self._switch("camera", on))
+        self.layer_buttons = {
+            name: toggle(icon, text, lambda on, name=name: self._switch(name, on), on=getattr(self.shown, name))
+            for name, icon, text in LAYERS
+        }
+        self.paths_button, self.masks_button = self.layer_buttons["paths"], self.layer_buttons["masks"]
+        self.onion_button, self.names_button = self.layer_buttons["onion"], self.layer_buttons["names"]
+        self.camera_button, self.grid_button = self.layer_buttons["camera"], self.layer_buttons["grid"]
         self.magnifier_button = toggle("magnifier", "Magnifier", self._magnify, key="Z")
         self.zoom = label("100 %", "label")
         self.zoom.setFixedWidth(44)
         self.zoom.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self.canvas = Canvas(self._begin)
         for widget in (
-            self.paths_button,
-            self.masks_button,
-            self.onion_button,
-            self.names_button,
-            self.camera_button,
+            *self.layer_buttons.values(),
             self.magnifier_button,
             self.zoom,
             icon_button("fit", "Show the whole picture", self.canvas.fit, "F"),
@@ -111,33 +124,17 @@ class VideoWorkspace(QWidget):
         self.canvas.view_changed.connect(lambda scale: self.zoom.setText(f"{100 * scale:.0f} %"))
         return self.panel
 
-    def _right(self) -> QWidget:
-        column = QWidget()
-        column.setFixedWidth(304)
-        layout = QVBoxLayout(column)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(8)
-        self.track_panel = Panel("Point")
-        self.inspector = TrackInspector()
+    def _right(self) -> RightColumn:
+        column = RightColumn()
+        self.inspector, self.scene, self.steps = column.inspector, column.scene, column.steps
+        self.accept_button, self.propose_button = column.accept_button, column.propose_button
         self.inspector.go.connect(self._go)
-        self.track_panel.column.addWidget(self.inspector, 1)
-        offers = QHBoxLayout()
-        offers.setContentsMargins(12, 0, 12, 12)
-        offers.setSpacing(6)
-        self.propose_button = button("Propose contacts", lambda: self.command("propose_contacts"), name="contact")
-        self.accept_button = button("Accept all", lambda: self.command("accept_contacts"))
-        offers.addWidget(self.propose_button)
-        offers.addWidget(self.accept_button)
-        self.track_panel.column.addLayout(offers)
-        self.steps_panel = Panel("What this project needs")
-        self.steps = StepList()
+        self.inspector.list.chosen.connect(lambda name: self.project and self.project.select_track(name))
+        self.scene.cleared.connect(self._choose_nothing)
         self.steps.run.connect(self.run_wanted)
-        self.steps_panel.column.addWidget(self.steps)
-        self.steps_panel.column.setContentsMargins(1, 1, 1, 1)
-        self.steps.layout().setContentsMargins(12, 0, 12, 12)
-        self.steps_panel.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
-        layout.addWidget(self.track_panel, 1)
-        layout.addWidget(self.steps_panel)
+        self.steps.ground.connect(lambda: self._choose_tool("ground"))
+        self.propose_button.clicked.connect(lambda: self.command("propose_contacts"))
+        self.accept_button.clicked.connect(lambda: self.command("accept_contacts"))
         return column
 
     # showing -----------------------------------------------------------------------------------------------------
@@ -145,7 +142,7 @@ class VideoWorkspace(QWidget):
     def attach(self, project: Project, loader: FrameLoader | None) -> None:
         """Take another project."""
         self.project, self.reading, self.loader = project, Reading(project), loader
-        self.shown.before = {}
+        self.shown.before = self.shown.compared = {}
         self.proposals = ContactProposals()
         self.contact_start = None
         if loader is not None:
@@ -192,10 +189,12 @@ class VideoWorkspace(QWidget):
         self.notes.setVisible(clip is not None)
         self._show_windows()
         known = next((reading.track(each) for each in project.document.tracks if each.id == project.track_id), None)
+        if self.tool == "ground":
+            scene_picking.keep_valid(project, self.shown)
+            self.scene.show_scene(project, self.shown.picked, self.shown.picked_tracks, frame)
         self.inspector.show_track(project, known, frame)
-        count = self.proposals.count(project)
-        self.accept_button.setText(f"Accept all {count}" if count > 1 else "Accept it" if count else "Accept all")
-        self.accept_button.setEnabled(count > 0)
+        self.inspector.show_points([(each, reading.track(each)) for each in project.document.tracks])
+        self.right.show_proposals(self.proposals.count(project))
         self.steps.show_steps(steps(project))
         self.canvas.update()
 
@@ -223,6 +222,10 @@ class VideoWorkspace(QWidget):
 
     def _switch(self, name: str, on: bool) -> None:
         setattr(self.shown, name, on)
+        if name in self.layer_buttons:
+            settings.settings().setValue(f"video/{name}", on)
+        if on and name in ("camera", "grid") and self.project is not None:
+            self.notes.say(missing_evidence(self.project, name))
         self.refresh()
 
     def _magnify(self, on: bool) -> None:
@@ -239,10 +242,17 @@ class VideoWorkspace(QWidget):
         self.tool = name
         self.contact_start = None
         self.tool_buttons[name].setChecked(True)
+        self.shown.choosing = name == "ground"
+        self.right.show_scene(name == "ground")
         self.canvas.panning = name == "pan"
         cursors = {"pan": Qt.CursorShape.OpenHandCursor, "select": Qt.CursorShape.ArrowCursor}
         self.canvas.setCursor(cursors.get(name, Qt.CursorShape.CrossCursor))
         self.hint.emit(HINTS[name])
+        self.refresh()
+
+    def _choose_nothing(self) -> None:
+        scene_picking.clear(self.shown)
+        self.refresh()
 
     def _begin(self, place: tuple[float, float], keys: Qt.KeyboardModifier) -> Gesture | None:
         return gesture_for(
@@ -294,7 +304,9 @@ class VideoWorkspace(QWidget):
     def _decided(self, event: object) -> None:
         project, frame = self.project, self.frame
         assert project is not None
-        if isinstance(event, Moved) and is_part(event.owner):
+        if self.tool == "ground" and isinstance(event, Placed | Drawn):
+            scene_picking.choose(project, self.shown, self._marks, frame, event, self.canvas.view.scale)
+        elif isinstance(event, Moved) and is_part(event.owner):
             edits_by_mouse.move_mask_part(project, frame, event.owner, event.place, event.start)
             self.shown.mask_part = ""
         elif isinstance(event, Moved):
@@ -342,6 +354,8 @@ class VideoWorkspace(QWidget):
         """Do a command of this workspace; says whether it was one."""
         if name.startswith("tool_"):
             self._choose_tool(name.removeprefix("tool_"))  # type: ignore[arg-type]
+        elif name.startswith("layer_"):
+            self.layer_buttons[name.removeprefix("layer_")].toggle()
         elif name == "cancel":
             if self.canvas.cancel():
                 return True

@@ -1,0 +1,56 @@
+"""What stands right of the picture: the selected point or the scene, and the steps of the project."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+
+from app.window.controls import Panel, button
+from app.window.video.inspector import TrackInspector
+from app.window.video.scene_panel import ScenePanel
+from app.window.video.steps import StepList
+
+WIDTH = 304
+
+
+class RightColumn(QWidget):
+    """Point, or ground and scale while that tool is in use; below what the project needs."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFixedWidth(WIDTH)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(8)
+        self.track_panel = Panel("Point")
+        self.inspector = TrackInspector()
+        self.track_panel.column.addWidget(self.inspector, 1)
+        offers = QHBoxLayout()
+        offers.setContentsMargins(12, 0, 12, 12)
+        offers.setSpacing(6)
+        self.propose_button: QPushButton = button("Propose contacts", lambda: None, name="contact")
+        self.accept_button: QPushButton = button("Accept all", lambda: None)
+        offers.addWidget(self.propose_button)
+        offers.addWidget(self.accept_button)
+        self.track_panel.column.addLayout(offers)
+        self.scene_panel = Panel("Ground and scale")
+        self.scene = ScenePanel()
+        self.scene_panel.column.addWidget(self.scene, 1)
+        self.steps_panel = Panel("What this project needs")
+        self.steps = StepList()
+        self.steps_panel.column.addWidget(self.steps)
+        self.steps_panel.column.setContentsMargins(1, 1, 1, 1)
+        self.steps.layout().setContentsMargins(12, 0, 12, 12)
+        self.steps_panel.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        layout.addWidget(self.track_panel, 1)
+        layout.addWidget(self.scene_panel, 1)
+        layout.addWidget(self.steps_panel)
+
+    def show_scene(self, scene: bool) -> None:
+        """Show ground and scale instead of the point, or the point again."""
+        self.scene_panel.setVisible(scene)
+        self.track_panel.setVisible(not scene)
+
+    def show_proposals(self, count: int) -> None:
+        """Show how many contacts are proposed."""
+        self.accept_button.setText(f"Accept all {count}" if count > 1 else "Accept it" if count else "Accept all")
+        self.accept_button.setEnabled(count > 0)
