@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -16,7 +16,10 @@ from app.stages.once import once
 from app.stages.results import Masks, World
 from app.stages.stage import Stage
 from imitation import CameraPath
-from imitation.depth import Background, DepthMap
+
+if TYPE_CHECKING:
+    # Only names: the engine loads slowly, and the window opens without it.
+    from imitation.depth import Background, DepthMap
 
 WIDTH = 480
 """Pixels on the longest side at which a project's depth is solved: contacts and occlusion need no more."""
@@ -76,6 +79,8 @@ def map_in_world(each: DepthMap, world: World) -> DepthMap:
 
 def background(frames: Any, maps: list[DepthMap], cameras: CameraPath, masks: Masks | None) -> Background:
     """What is known of the background, ready to give any frame's depth and plate."""
+    from imitation.depth import Background
+
     return Background(frames, cameras, maps, masks=masks)
 
 
