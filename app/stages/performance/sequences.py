@@ -125,8 +125,10 @@ class _Counter:
             self.faces.append(len(mesh.faces))
             self.coloured += mesh.colours is not None
             self.textured += mesh.texture is not None
-            self.low = np.minimum(self.low, mesh.vertices.min(axis=0))
-            self.high = np.maximum(self.high, mesh.vertices.max(axis=0))
+            # Column by column: several times quicker than along the short axis.
+            columns = mesh.vertices.T
+            self.low = np.minimum(self.low, [column.min() for column in columns])
+            self.high = np.maximum(self.high, [column.max() for column in columns])
             yield mesh.vertices, mesh.faces
 
     def statistics(self, fps: float, height: float) -> Statistics:
