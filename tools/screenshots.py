@@ -17,10 +17,14 @@ os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
+import numpy as np  # noqa: E402
+
 from app.actions.sample import fill_with_sample  # noqa: E402
 from app.actions.session import Session  # noqa: E402
+from app.model.edits import scene  # noqa: E402
 from app.window.application import make_application  # noqa: E402
 from app.window.shell import Shell  # noqa: E402
+from app.window.video.scene_picking import seen_points  # noqa: E402
 
 TARGET = ROOT / "docs" / "screenshots"
 SIZES = ((1440, 900), (1920, 1080))
@@ -106,6 +110,48 @@ def _video(shell: Shell, camera: Camera) -> None:
     camera.take("video-camera")
     shell.video.camera_button.setChecked(False)
     shell.video.names_button.setChecked(True)
+    _masks(shell, camera, track)
+    _ground(shell, camera)
+
+
+def _masks(shell: Shell, camera: Camera, track: str) -> None:
+    """A mask being edited between its neighbours, and contacts that are proposed."""
+    project = shell.project
+    assert project is not None
+    assert shell.opened is not None
+    shell.opened.keeper.automatic = False
+    places = [mark.at(project.frame) for mark in shell.video._marks]
+    corners = np.array([place for place in places if place is not None])
+    (left, top), (right, bottom) = corners.min(0) - 20, corners.max(0) + 20
+    outline = np.array([(left, top + 12), (right - 12, top), (right, bottom), (left + 20, bottom + 8)])
+    middle = np.add(outline.mean(0), [[-14, -8], [14, -8], [0, 14]]).tolist()
+    steps = 0
+    for frame, shift in ((project.frame - 8, -16), (project.frame + 8, 16), (project.frame, 0)):
+        steps += project.edit(scene.add_lasso, frame, np.add(outline, [shift, 0]).tolist())
+    steps += project.edit(scene.add_lasso, project.frame, middle, subtract=True)
+    shell.video.onion_button.setChecked(True)
+    shell.video.shown.mask_part = "corner/0/1"
+    project.select_track(track)
+    shell.do("propose_contacts")
+    camera.take("video-masks")
+    shell.video.onion_button.setChecked(False)
+    for _ in range(steps):
+        project.undo()
+    shell.opened.keeper.automatic = True
+
+
+def _ground(shell: Shell, camera: Camera) -> None:
+    """Points of the scene chosen for the ground, with the grid and the horizon."""
+    project = shell.project
+    assert project is not None
+    shell.do("tool_ground")
+    shell.video.grid_button.setChecked(True)
+    found = seen_points(project, shell.video.frame)
+    low = found.index[np.argsort(-found.places[:, 1])]
+    shell.video.shown.picked = tuple(low[:40:8].tolist())
+    camera.take("video-ground")
+    shell.video.grid_button.setChecked(False)
+    shell.do("tool_select")
 
 
 def _character(shell: Shell, camera: Camera) -> None:

@@ -155,7 +155,10 @@ def outline(mask: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
 
 def _scene_points(project: Project, frame: int, shown: Shown) -> ScenePoints:
     found = evidence(project.result(project.session.stages.cameras), frame)
-    return ScenePoints(found.places, found.residuals, np.isin(found.index, shown.picked))
+    clip = project.document.clip
+    size = (clip.width, clip.height) if clip is not None else (0, 0)
+    inside = ((found.places > -0.5) & (found.places < np.subtract(size, 0.5))).all(1)
+    return ScenePoints(found.places[inside], found.residuals[inside], np.isin(found.index[inside], shown.picked))
 
 
 def missing_evidence(project: Project, layer: str) -> str:
@@ -178,7 +181,7 @@ def _grid(project: Project, frame: int) -> list[Overlay]:
     camera, size = world.camera(frame), (clip.width, clip.height)
     lines, step = ground_grid(camera, world.offset, size)
     cell = f"a cell is {step:g} m" if world.metric else f"a cell is {step:g} units, the scale is unknown"
-    return [GroundGrid(tuple(lines), horizon(camera, size), cell if lines else "")]
+    return [GroundGrid(tuple(lines), size, horizon(camera, size), cell if lines else "")]
 
 
 def track_at(marks: tuple[TrackMark, ...], frame: int, place: tuple[float, float], scale: float) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from app.window import fonts, theme
@@ -55,20 +55,28 @@ class ScenePoints:
 
 @dataclass(frozen=True, eq=False)
 class GroundGrid:
-    """The ground as lines (k, 2) in picture pixels, NaN where they break, the horizon (2, 2), and what a cell is."""
+    """The ground as lines (k, 2) in picture pixels, NaN where they break, the horizon (2, 2), and what a cell is.
+
+    picture : width and height of the picture, which the grid does not leave.
+    """
 
     lines: tuple[NDArray[np.float64], ...]
+    picture: tuple[int, int]
     horizon: NDArray[np.float64] | None = None
     cell: str = ""
 
     def paint(self, painter: QPainter, view: View, size: tuple[int, int]) -> None:
-        """Draw the grid thin, the horizon dashed with its name."""
+        """Draw the grid thin inside the picture, the horizon dashed with its name."""
+        painter.save()
+        width, height = self.picture
+        painter.setClipRect(QRectF(view.x, view.y, width * view.scale, height * view.scale))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         paths = [path_through(view.to_widget(line)) for line in self.lines]
-        for colour, width in ((QColor(0, 0, 0, 90), 2.2), (QColor(255, 255, 255, 120), 0.9)):
-            painter.setPen(QPen(colour, width))
+        for colour, wide in ((QColor(0, 0, 0, 90), 2.2), (QColor(255, 255, 255, 120), 0.9)):
+            painter.setPen(QPen(colour, wide))
             for path in paths:
                 painter.drawPath(path)
+        painter.restore()
         if self.horizon is None:
             return
         left, right = view.to_widget(self.horizon)

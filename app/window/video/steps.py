@@ -8,7 +8,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.window import icons
-from app.window.controls import Elided, button, label
+from app.window.controls import Elided, button, icon_button, label
 from app.window.project import Project
 
 
@@ -83,9 +83,7 @@ def _ground(project: Project) -> Step:
     if world.grounded:
         return Step("Ground", f"laid, {scale}", "done")
     flat = path is not None and path.verdict in ("static", "rotation") and project.document.world.ground == "local"
-    return Step(
-        "Ground", "no parallax: choose one" if flat else f"constant depth, {scale}", "optional" if flat else "done"
-    )
+    return Step("Ground", "no parallax: choose one" if flat else "constant depth", "optional" if flat else "done")
 
 
 def _state(state: str) -> str:
@@ -113,9 +111,12 @@ class StepList(QWidget):
         self._shown: list[Step] = []
         self.button = button("Run what is missing", self.run.emit, primary=True, name="run")
         self._column.addSpacing(4)
-        self._column.addWidget(self.button)
-        self.ground_button = button("Choose ground and scale", self.ground.emit, name="ground")
-        self._column.addWidget(self.ground_button)
+        self.ground_button = icon_button("ground", "Choose ground and scale", self.ground.emit, "B")
+        last = QHBoxLayout()
+        last.setSpacing(6)
+        last.addWidget(self.button, 1)
+        last.addWidget(self.ground_button)
+        self._column.addLayout(last)
 
     def show_steps(self, steps_: list[Step]) -> None:
         """Show the steps as they stand."""

@@ -19,6 +19,17 @@ TOOLS: tuple[tuple[Tool, str, str], ...] = (
     ("ground", "Ground", "B"),
     ("pan", "Pan", "H"),
 )
+LAYERS = (
+    ("paths", "paths", "Paths"),
+    ("masks", "masks", "Masks"),
+    ("onion", "onion", "Onion"),
+    ("names", "labels", "Names"),
+    ("camera", "camera", "Camera"),
+    ("grid", "grid", "Ground"),
+)
+"""What can be drawn over the picture and is remembered between runs: name, icon, text."""
+NARROW = 1300
+"""Pixels of width below which the switches show no text."""
 HINTS: dict[str, str] = {
     "select": "Drag a point, or a mask's corner, edge or inside, to where it belongs. Wheel zooms, middle button pans.",
     "lasso": "Draw round the subject, roughly. Shift adds, Alt takes away; corners and edges can be pulled.",

@@ -26,17 +26,7 @@ from app.window.video.point_windows import PointWindows, Window, window_frames
 from app.window.video.proposals import ContactProposals
 from app.window.video.right_column import RightColumn
 from app.window.video.steps import steps
-from app.window.video.tools import HINTS, TOOLS, Tool, gesture_for
-
-LAYERS = (
-    ("paths", "paths", "Paths"),
-    ("masks", "masks", "Masks"),
-    ("onion", "onion", "Onion skin"),
-    ("names", "labels", "Names"),
-    ("camera", "camera", "Camera"),
-    ("grid", "grid", "Ground"),
-)
-"""What can be drawn over the picture and is remembered between runs: name, icon, text."""
+from app.window.video.tools import HINTS, LAYERS, NARROW, TOOLS, Tool, gesture_for
 
 
 class VideoWorkspace(QWidget):
@@ -171,6 +161,14 @@ class VideoWorkspace(QWidget):
     def showEvent(self, event: object) -> None:
         """Say what the mouse does when the workspace comes into sight."""
         self.hint.emit(HINTS[self.tool])
+
+    def resizeEvent(self, event: object) -> None:
+        """Where there is little room the switches over the picture are icons alone."""
+        narrow = self.width() < NARROW
+        style = Qt.ToolButtonStyle.ToolButtonIconOnly if narrow else Qt.ToolButtonStyle.ToolButtonTextBesideIcon
+        for each in (*self.layer_buttons.values(), self.magnifier_button):
+            if each.toolButtonStyle() != style:
+                each.setToolButtonStyle(style)
 
     def refresh(self) -> None:
         """Show the project as it is."""
