@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from app.formats import open_images, open_video, read_mesh, read_sequence
+from app.formats.tvm import MeshFrames, open_mesh_frames
 from app.storage.folder import SUFFIX, ProjectFolder
 from imitation.errors import InputError
 
@@ -63,6 +64,17 @@ def _project(path: Path) -> dict[str, Any]:
 
 
 def _sequence(path: Path) -> dict[str, Any]:
+    if path.is_dir() or path.suffix.lower() == ".npz":
+        with open_mesh_frames(path) as frames:
+            if not frames.moving and _changes(frames):
+                first = frames[0]
+                return {
+                    "kind": "mesh sequence with faces of its own in every frame",
+                    "frames": len(frames),
+                    "vertices": len(first.vertices),
+                    "faces": len(first.faces),
+                    "fps": float(frames.fps) if frames.fps is not None else "not stated",
+                }
     sequence = read_sequence(path)
     return {
         "kind": "mesh sequence",
@@ -71,6 +83,16 @@ def _sequence(path: Path) -> dict[str, Any]:
         "faces": len(sequence.faces),
         "fps": float(sequence.fps),
     }
+
+
+def _changes(frames: MeshFrames) -> bool:
+    """Whether the second frame or the last has other faces than the first."""
+    import numpy as np
+
+    first, *others = (frames[k] for k in (0, 1, -1))
+    return any(
+        len(other.vertices) != len(first.vertices) or not np.array_equal(other.faces, first.faces) for other in others
+    )
 
 
 def _cameras(path: Path) -> dict[str, Any]:

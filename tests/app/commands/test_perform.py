@@ -161,3 +161,14 @@ def test_guesses_are_warned_of(tmp_path: Path, capsys: pytest.CaptureFixture[str
     out, err = capsys.readouterr()
     assert json.loads(out)["added"][0]["guessed"] == ["fps", "up", "unit"]
     assert "Guessed for ply: 25 frames a second, Z up, metres" in err
+
+
+def test_check_knows_such_sequences(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """``check`` says what a capture is, in a folder and in an npz."""
+    capsys.readouterr()
+    paths = [write_capture(tmp_path / "ply", "ply"), write_capture(tmp_path / "take.npz")]
+    assert run(["--json", "check", *map(str, paths)]) == DONE
+    told = json.loads(capsys.readouterr().out)
+    for path, fps in zip(paths, ("not stated", 15.0), strict=True):
+        assert "faces of its own" in told[str(path)]["kind"]
+        assert (told[str(path)]["frames"], told[str(path)]["fps"]) == (len(small_capture()), fps)
