@@ -93,7 +93,7 @@ def _key(
         ridge = np.diag([0.0, 1.0, 1.0, 1.0]) * 0.01 * len(value)
         fit = np.linalg.solve((root * basis).T @ (root * basis) + ridge, (root * basis).T @ (root[:, 0] * value))
         off = np.abs(value - basis @ fit)
-        weight = 1 / (1 + (off / (1.5 * np.median(off) + 1e-9)) ** 2)
+        weight = 1 / (1 + (off / (1.5 * max(float(np.median(off)), 0.1))) ** 2)
     rest = np.average((value - basis @ fit) ** 2, weights=weight)
     spread = np.average((value - np.average(value, weights=weight)) ** 2, weights=weight)
     share = float(np.clip(1 - rest / max(spread, 1e-12), 0, 1))
