@@ -75,7 +75,10 @@ class Keeper(QObject):
 
     def _cameras(self) -> list[Stage]:
         stages = self.project.session.stages
-        return [stages.cameras, stages.world] if self.project.document.clip else []
+        document = self.project.document
+        if document.clip is None:
+            return []
+        return [stages.cameras, stages.world, *([stages.masks] if document.masks else [])]
 
     def _motion(self) -> list[Stage]:
         stages = self.project.session.stages

@@ -123,6 +123,7 @@ class TimelinePanel(Panel):
     def menu_for(self, found: TimelineHit) -> QMenu:
         """What can be done with something in the lanes."""
         menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         project = self.project
         if project is None:
             return menu

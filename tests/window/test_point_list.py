@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QMenu
 
 from app.window.shell import Shell
 from app.window.video.point_list import ROW
@@ -63,3 +64,19 @@ def test_the_old_path_stays_beside_the_new_one_until_something_else_is_chosen(sh
     shell.project.select_track(shell.project.document.tracks[0].id)
     settle()
     assert not shell.video.shown.compared
+
+
+def test_the_menu_of_a_point_does_what_its_keys_do(shell: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A right click chooses the point and offers its acts; one of them is done by the menu."""
+    go(shell, 5)
+    track = next(each for each in shell.project.document.tracks if not each.contacts)
+    opened: list[QMenu] = []
+    monkeypatch.setattr(QMenu, "popup", lambda menu, place: opened.append(menu))
+    QTest.mouseClick(shell.video.canvas, Qt.MouseButton.RightButton, pos=at(*place_of(shell, track.id)))
+    (menu,) = opened
+    assert shell.project.track_id == track.id
+    texts = {action.text().split("\t")[0]: action for action in menu.actions()}
+    assert {"Contact in this frame", "Hidden in this frame", "End here", "Rename", "Delete point"} <= set(texts)
+    texts["Contact in this frame"].trigger()
+    spans = [contact.span for contact in shell.project.document.track(track.id).contacts]
+    assert [(span.first, span.last) for span in spans] == [(5, 5)]

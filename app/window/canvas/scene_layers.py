@@ -83,7 +83,7 @@ class GroundGrid:
         line = marks.polygon([left, right])
         marks.stroke(painter, line, theme.DARK.colour("accent"), 1.4, dash=True)
         y = min(max(float(left[1]), 34.0), size[1] - 34.0)
-        place = QPointF(12, y - 14)
+        place = QPointF(max(12.0, float(left[0]) + 8), y - 14)
         text = "horizon" if 0 < left[1] < size[1] else "horizon above" if left[1] <= 0 else "horizon below"
         words = f"{text}  ·  {self.cell}" if self.cell else text
         marks.plate(painter, place.x(), place.y(), words, theme.DARK.colour("accent"), size=fonts.CAPTION)

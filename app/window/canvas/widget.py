@@ -32,6 +32,7 @@ class Canvas(QWidget):
     happened = Signal(object)
     hovered = Signal(object)
     view_changed = Signal(float)
+    menu_wanted = Signal(object, object)
 
     def __init__(
         self, begin: Callable[[Place, Qt.KeyboardModifier], Gesture | None], parent: QWidget | None = None
@@ -119,6 +120,8 @@ class Canvas(QWidget):
         if middle or (self.panning and event.button() == Qt.MouseButton.LeftButton):
             self._pan = event.position()
             self.setCursor(Qt.CursorShape.ClosedHandCursor)
+        elif event.button() == Qt.MouseButton.RightButton and self._gesture is None and not self._picture.isNull():
+            self.menu_wanted.emit(self._place(event.position()), event.globalPosition().toPoint())
         elif event.button() == Qt.MouseButton.LeftButton and not self._picture.isNull():
             self._gesture = self._begin(self._place(event.position()), event.modifiers())
             if self._gesture is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from app.actions import proposing
 from app.model.document import Document
 from app.model.edits import contacts, scene, tracks
 from app.window.picture_layers import Shown
@@ -80,6 +81,16 @@ def delete(project: Project, frame: int, part: str = "") -> None:
         project.edit(tracks.remove_click, track.id, frame)
     else:
         project.edit(tracks.delete_track, track.id)
+
+
+def next_problem(project: Project) -> str:
+    """Go to the frame that needs a click most, of the selected point or of all; a sentence where there is none."""
+    found = proposing.click_wanted(project.session, project.track_id)
+    if found is None:
+        return "No frame asks for a click: points that are still followed come later."
+    project.select_track(found[0])
+    project.show_frame(found[1])
+    return ""
 
 
 def keep_old_paths(shown: Shown, reading: Reading, before: Document, after: Document) -> None:

@@ -6,11 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import Signal
+from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QLabel, QPushButton
 
 from app.actions import marks
 from app.model.edits import scene
 from app.model.world import KnownLength
+from app.window import icons
 from app.window.controls import NumberField, NumberRange, Row, ScrollColumn, button, label, separator
 from app.window.project import Project
 from imitation.errors import InputError
@@ -78,7 +80,9 @@ class ScenePanel(ScrollColumn):
         choice = project.document.world
         for kind, each in self.grounds.items():
             each.setChecked(kind == choice.ground)
+            each.setIcon(icons.icon("solution", "accent") if kind == choice.ground else QIcon())
         self.above.setChecked(choice.from_above)
+        self.above.setIcon(icons.icon("solution", "accent") if choice.from_above else QIcon())
         self.forget.setEnabled(choice.length is not None or choice.seen is not None)
         world = project.result(project.session.stages.world)
         path = self._path()

@@ -6,9 +6,8 @@ from collections.abc import Callable
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QWidget
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QMenu, QWidget
 
-from app.actions import proposing
 from app.model.document import Document
 from app.model.values import KeyMask
 from app.window import settings
@@ -21,7 +20,8 @@ from app.window.picture_notes import PictureNotes
 from app.window.project import Project
 from app.window.reading import Reading
 from app.window.video import edits_by_mouse, scene_picking
-from app.window.video.mask_editing import is_part, moved
+from app.window.video.mask_editing import is_part, moved, part_at
+from app.window.video.picture_menu import picture_menu
 from app.window.video.point_windows import PointWindows, Window, window_frames
 from app.window.video.proposals import ContactProposals
 from app.window.video.right_column import RightColumn
@@ -111,6 +111,7 @@ class VideoWorkspace(QWidget):
         self.notes = PictureNotes(self.canvas)
         self.canvas.happened.connect(self._happened)
         self.canvas.hovered.connect(self._hovered)
+        self.canvas.menu_wanted.connect(lambda place, where: self.menu_at(place).popup(where))
         self.canvas.view_changed.connect(lambda scale: self.zoom.setText(f"{100 * scale:.0f} %"))
         return self.panel
 
@@ -264,6 +265,19 @@ class VideoWorkspace(QWidget):
             key=self._mask(),
         )
 
+    def menu_at(self, place: tuple[float, float]) -> QMenu:
+        """Choose what is under a place, and give the menu of what can be done with it."""
+        project, scale = self.project, self.canvas.view.scale
+        track = track_at(self._marks, self.frame, place, scale)
+        part = "" if track else part_at(self._mask(), place, scale, whole=True)
+        chosen = None
+        if project is not None:
+            project.select_track(track)
+            self.shown.mask_part = part
+            self.refresh()
+            chosen = project.document.track(track) if track else None
+        return picture_menu(self, self.command, chosen, part, self.frame)
+
     def _mask(self) -> KeyMask | None:
         """The mask drawn in this frame, where masks are seen."""
         seen = self.project is not None and self.shown.masks and self.shown.marks
@@ -335,17 +349,6 @@ class VideoWorkspace(QWidget):
         self.notes.say(sentence)
         self.lanes_changed.emit()
 
-    def _next_problem(self) -> None:
-        """Go to the frame that needs a click most: of the selected point, or of all."""
-        project = self.project
-        assert project is not None
-        found = proposing.click_wanted(project.session, project.track_id)
-        if found is None:
-            self.notes.say("No frame asks for a click: points that are still followed come later.")
-            return
-        project.select_track(found[0])
-        project.show_frame(found[1])
-
     # commands ----------------------------------------------------------------------------------------------------
 
     def command(self, name: str) -> bool:
@@ -378,7 +381,7 @@ class VideoWorkspace(QWidget):
             "magnifier": self.magnifier_button.toggle,
             "overlay": lambda: self._switch("marks", not self.shown.marks),
             "delete": lambda: edits_by_mouse.delete(project, frame, self.shown.mask_part),
-            "next_problem": self._next_problem,
+            "next_problem": lambda: self.notes.say(edits_by_mouse.next_problem(project)),
             "propose_contacts": lambda: self._proposed(self.proposals.find(project)),
             "accept_contacts": lambda: self._proposed(self.proposals.accept(project)),
             "next_track": project.select_next_track,
