@@ -120,6 +120,7 @@ def _masks(shell: Shell, camera: Camera, track: str) -> None:
     assert project is not None
     assert shell.opened is not None
     shell.opened.keeper.automatic = False
+    shell.do("propose_contacts")
     places = [mark.at(project.frame) for mark in shell.video._marks]
     corners = np.array([place for place in places if place is not None])
     (left, top), (right, bottom) = corners.min(0) - 20, corners.max(0) + 20
@@ -132,7 +133,6 @@ def _masks(shell: Shell, camera: Camera, track: str) -> None:
     shell.video.onion_button.setChecked(True)
     shell.video.shown.mask_part = "corner/0/1"
     project.select_track(track)
-    shell.do("propose_contacts")
     camera.take("video-masks")
     shell.video.onion_button.setChecked(False)
     for _ in range(steps):

@@ -164,7 +164,9 @@ def _curve(painter: QPainter, axis: Axis, placed: Placed, curve: Curve) -> None:
     painter.drawLine(QPointF(axis.left, y(curve.limit)), QPointF(axis.width, y(curve.limit)))
     painter.setFont(fonts.font(fonts.LANE))
     painter.setPen(look.colour("err"))
-    painter.drawText(QPointF(axis.left + 4, y(curve.limit) - 3), f"{curve.limit:g} {curve.unit} limit")
+    above = y(curve.limit) - 3
+    baseline = above if above > placed.top + 12 else above + 14
+    painter.drawText(QPointF(axis.left + 4, baseline), f"{curve.limit:g} {curve.unit} limit")
 
 
 def paint_playhead(painter: QPainter, axis: Axis, frame: int, height: int) -> None:
