@@ -139,14 +139,12 @@ class Background:
         return sorted(self.maps, key=lambda each: (abs(each.frame - frame), each.frame))[:count]
 
     def _donors(self, frame: int) -> list[int]:
-        """Frames to take colours from: all near ones, ever fewer farther away; near ones first."""
-        count = len(self.pictures)
-        away = 1
-        chosen: list[int] = []
-        while len(chosen) < DONORS and away < count:
-            chosen += [t for t in (frame - away, frame + away) if 0 <= t < count]
-            away += 1 + away // 10
-        return chosen[:DONORS]
+        """Frames to take colours from: the near ones, and some over the whole clip; near ones first."""
+        others = [t for t in range(len(self.pictures)) if t != frame]
+        others.sort(key=lambda t: (abs(t - frame), t))
+        near, rest = others[: DONORS // 2], others[DONORS // 2 :]
+        step = max(1, -(-len(rest) // (DONORS - len(near)))) if rest else 1
+        return near + rest[::step]
 
     def _stack(self, donors: Sequence[int]) -> tuple[NDArray[np.uint8], NDArray[np.uint8], list[Camera]]:
         stack = np.stack([self.pictures.colour(t) for t in donors])
