@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
 import sys
 import traceback
 
 import click
 
+from app.commands.lazy import LazyGroup
 from app.model.values import ModelError
 from imitation.errors import Cancelled, InputError, NoSolution
 
@@ -33,23 +33,9 @@ VERBS = {
 }
 
 
-class Verbs(click.Group):
-    """Loads a verb's module when the verb is used, so that --help does not import half the world."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Give the verbs in the order of work."""
-        return list(VERBS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Load one verb."""
-        if cmd_name not in VERBS:
-            return None
-        module, _, name = VERBS[cmd_name].partition(":")
-        command: click.Command = getattr(importlib.import_module(module), name)
-        return command
-
-
-@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(
+    cls=LazyGroup, verbs=VERBS, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100}
+)
 @click.version_option(package_name="motionwright", prog_name="motionwright")
 @click.option("--json", "as_json", is_flag=True, help="Answer in JSON, for machines.")
 @click.option("--quiet", is_flag=True, help="Say nothing but errors.")

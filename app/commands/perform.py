@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import importlib
-
 import click
+
+from app.commands.lazy import LazyGroup
 
 VERBS = {
     "add": "app.commands.perform_sequences:add",
@@ -16,22 +16,6 @@ VERBS = {
 }
 
 
-class PerformVerbs(click.Group):
-    """Loads a verb's module when the verb is used."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Give the verbs in the order of work."""
-        return list(VERBS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Load one verb."""
-        if cmd_name not in VERBS:
-            return None
-        module, _, name = VERBS[cmd_name].partition(":")
-        command: click.Command = getattr(importlib.import_module(module), name)
-        return command
-
-
-@click.group(cls=PerformVerbs)
+@click.group(cls=LazyGroup, verbs=VERBS)
 def perform() -> None:
     """Compose performances of captured sequences (meshes whose every frame has faces of its own)."""
