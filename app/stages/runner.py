@@ -132,11 +132,9 @@ class Runner:
                     job.report(stage, 1.0)
                     job.listener.finished_stage(job, stage)
         finally:
-            for stage in pending.values():
-                self._leave(job, stage)
-            for future in pending:
-                if self._local and not future.cancel():
-                    wait([future])
+            left = [future for future, stage in pending.items() if self._leave(job, stage)]
+            if self._local:
+                wait(left)
 
     def _missing(self, job: Job, order: list[Stage]) -> list[Stage]:
         """Give the stages to compute: those whose results some missing stage needs, not the whole past."""
@@ -207,14 +205,23 @@ class Runner:
         if error is not None:
             raise error
 
-    def _leave(self, job: Job, stage: Stage) -> None:
-        """A job no longer waits for a stage; the last one to leave stops it."""
+    def _leave(self, job: Job, stage: Stage) -> bool:
+        """A job no longer waits for a stage; the last one to leave stops it. Says whether it has to be waited for.
+
+        What other jobs wait for goes on. What has not begun is taken off the queue: no worker will ever settle it.
+        """
         with self._lock:
             running = self._running.get(stage.key)
-            if running is not None:
-                running.jobs.discard(job)
-                if not running.jobs:
-                    running.token.cancel()
+            if running is None:
+                return False
+            running.jobs.discard(job)
+            if running.jobs:
+                return False
+            running.token.cancel()
+            if self._local and running.future.cancel():
+                del self._running[stage.key]
+                return False
+            return True
 
 
 class _Running:

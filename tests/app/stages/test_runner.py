@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -145,6 +145,38 @@ def test_two_jobs_share_a_stage_and_one_may_leave(runner: Runner) -> None:
     assert first.state == "cancelled"
     assert second.wait(10)
     assert second.state == "done"
+
+
+def gated(context: Context, inputs: tuple[float]) -> str:
+    """Hold a worker until the gate opens."""
+    assert GATE.wait(10)
+    return "done"
+
+
+def test_a_job_that_leaves_takes_nothing_off_the_queue_that_another_waits_for(tmp_path: Path) -> None:
+    """A stage that has not begun is shared by two jobs; one is cancelled, the other gets its result."""
+    GATE.clear()
+    CALLS.clear()
+    with ThreadPoolExecutor(1) as workers:
+        runner = Runner(ResultCache(ResultStore(tmp_path)), Media(lambda media: tmp_path), workers)
+        holding = runner.start("hold", (Stage("hold", "hold", gated, (1.0,), ()),))
+        shared, alone = number("shared", 7), number("alone", 8)
+        first, second = runner.start("first", (shared, alone)), runner.start("second", (shared,))
+        end = time.monotonic() + 10
+        while len(getattr(runner._running.get(shared.key), "jobs", ())) < 2 or runner.state(alone) != "running":
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        first.cancel()
+        assert first.wait(5), "a job need not wait for what others go on with"
+        assert first.state == "cancelled"
+        assert runner.state(alone) == "missing", "nobody waits for it any more"
+        GATE.set()
+        assert second.wait(10)
+        assert second.state == "done"
+        assert holding.wait(10)
+        assert runner.cache.get(shared) == 7
+        assert CALLS == ["shared"]
+        runner.close()
 
 
 def test_partial_results_stream(runner: Runner) -> None:
