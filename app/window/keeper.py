@@ -10,6 +10,8 @@ from app.stages.stage import Stage
 from app.window.project import Project
 
 LINGER = 150
+IDLE = 1500
+"""Milliseconds after the last stroke of a mask before it is carried through the clip."""
 
 
 class Keeper(QObject):
@@ -31,11 +33,26 @@ class Keeper(QObject):
         self._linger.setSingleShot(True)
         self._linger.setInterval(LINGER)
         self._linger.timeout.connect(self._give_up_old)
+        self._idle = QTimer(self)
+        self._idle.setSingleShot(True)
+        self._idle.setInterval(IDLE)
+        self._idle.timeout.connect(self._carry_masks)
         project.document_changed.connect(self._changed)
         project.stage_finished.connect(self._finished)
 
     def _changed(self, before: Document, after: Document) -> None:
         self.keep_up()
+        if self.automatic and before.clip == after.clip and before.masks != after.masks:
+            self._idle.start()
+
+    def _carry_masks(self) -> None:
+        """Carry drawn masks through the clip once nobody draws any more and nothing else is computed."""
+        others = [job for job in self.project.progress if job is not self._jobs.get("masks")]
+        if others:
+            self._idle.start()
+        elif self.automatic:
+            stages = [self.project.session.stages.masks] if self.project.document.masks else []
+            self._want("masks", "Carrying the masks", self._missing(stages))
 
     def _finished(self, stage: Stage) -> None:
         if stage.name.startswith("track/"):
@@ -115,4 +132,5 @@ class Keeper(QObject):
     def close(self) -> None:
         """Stop following."""
         self._linger.stop()
+        self._idle.stop()
         self.automatic = False

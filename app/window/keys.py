@@ -86,7 +86,7 @@ COMMANDS = (
     Command("tool_select", "Select", ("V",), "Tools"),
     Command("tool_lasso", "Lasso", ("M",), "Tools"),
     Command("tool_point", "Point", ("P",), "Tools"),
-    Command("tool_contact", "Contact", ("C",), "Tools"),
+    Command("tool_contact", "Contact; once more: the chosen point in this frame", ("C",), "Tools"),
     Command("tool_ground", "Ground and scale", ("B",), "Tools"),
     Command("tool_pan", "Pan", ("H",), "Tools"),
 )

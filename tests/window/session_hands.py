@@ -159,6 +159,14 @@ class Hands:
         QTest.mouseClick(self.shell.video.canvas, LEFT, PLAIN, at(*self.seen(name)))
         assert self.shell.project.track_id == self.tracks[name]
 
+    def select(self, name: str) -> None:
+        """Choose a point by Tab, which also finds hidden ones."""
+        for _ in self.tracks:
+            if self.shell.project.track_id == self.tracks[name]:
+                return
+            self.key(Qt.Key.Key_Tab)
+        assert self.shell.project.track_id == self.tracks[name]
+
     def contact(self, name: str, first: int, last: int) -> None:
         """Mark a contact with the Contact tool: a click in its first and one in its last frame."""
         self.key(Qt.Key.Key_Escape)
@@ -203,6 +211,16 @@ class Hands:
             character = self.document.characters[0]
             assert character.pairs.get(self.tracks[name]) == found, name
             done.append(name)
+        return done
+
+    def pair_all(self, pairs: dict[str, int]) -> list[str]:
+        """Pair what can be seen, turn the character, go on; gives the paired."""
+        done: list[str] = []
+        for _ in range(4):
+            done += self.pair({name: vertex for name, vertex in pairs.items() if name not in done})
+            if len(done) == len(pairs):
+                break
+            self.turn(90)
         return done
 
     def pick(self, box: QComboBox, text: str) -> None:

@@ -106,12 +106,7 @@ def test_from_an_empty_window_to_an_exported_motion(
     assert shell.project.document.characters[0].alignment.up == "z"
     settle()
     todo = {name: vertex for name, vertex in known["pairs"].items() if name in hands.tracks}
-    paired: list[str] = []
-    for _ in range(4):
-        paired += hands.pair({name: vertex for name, vertex in todo.items() if name not in paired})
-        if len(paired) == len(todo):
-            break
-        hands.turn(90)
+    paired = hands.pair_all(todo)
     assert len(paired) >= 8, paired
     hands.key(Qt.Key.Key_Escape)
     assert not shell.character.tracks.pair_button.isChecked()

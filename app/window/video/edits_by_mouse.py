@@ -63,6 +63,19 @@ def mark_contact(
     return (track_id, frame), f"Contact of {track.name} begins at frame {frame}: click it in the last such frame."
 
 
+def contact_by_key(project: Project, frame: int, start: tuple[str, int] | None) -> tuple[tuple[str, int] | None, str]:
+    """The Contact key, pressed with that tool in hand: the selected point stands in this frame, or not.
+
+    A contact that was begun by a click ends here instead. Gives the open mark, none, and what to do next.
+    """
+    if start is not None and start[0] == project.track_id:
+        return mark_contact(project, project.track_id, frame, start)
+    if not project.track_id:
+        return None, "Choose a point first: C then marks that it stands on the ground in a frame, or not."
+    project.edit(contacts.toggle_contact, project.track_id, frame)
+    return None, ""
+
+
 def move_mask_part(project: Project, frame: int, part: str, place: Place, start: Place) -> None:
     """Put a corner, an edge or the whole of a lasso somewhere."""
     project.edit(mask_editing.moved, frame, part, place, start)

@@ -11,6 +11,8 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.model.tracks import Track
 from app.window import fonts, theme
+from app.window.project import Project
+from app.window.reading import Reading
 
 SIDE, REACH = 74, 18.0
 
@@ -44,6 +46,22 @@ def window_frames(track: Track, frame: int, count: int) -> list[tuple[int, str]]
         for number, (at, text) in enumerate(rows)
         if number == 2 or (at != frame and at not in {other for other, _ in rows[:number]})
     ]
+
+
+def windows_of(project: Project, reading: Reading, frame: int) -> list[Window]:
+    """The windows of the selected point round a frame; none where no point is selected."""
+    track = next((each for each in project.document.tracks if each.id == project.track_id), None)
+    if track is None or not project.frame_count:
+        return []
+    known = reading.track(track)
+    made = []
+    for at, caption in window_frames(track, frame, project.frame_count):
+        x, y = known.positions[at]
+        place = (float(x), float(y)) if x == x else None
+        note = f"sure {known.confidence[at]:.2f}" if known.state[at] else "not solved"
+        clicked = at in track.clicks
+        made.append(Window(at, place, caption, "by you" if clicked else note, clicked, at == frame))
+    return made
 
 
 class PointWindows(QWidget):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import Signal
@@ -15,6 +14,8 @@ from app.model.world import KnownLength
 from app.window import icons
 from app.window.controls import NumberField, NumberRange, Row, ScrollColumn, button, label, separator
 from app.window.project import Project
+from app.window.video import ground_edits
+from app.window.video.assumptions import Assumptions
 from imitation.errors import InputError
 
 METRES = NumberRange(0.001, 10_000.0, 0.01, 3, "m", 1.0)
@@ -35,6 +36,8 @@ class ScenePanel(ScrollColumn):
         self.rows.addWidget(self.chosen)
         self.lay = button("Lay the ground through them", self.lay_ground, name="ground")
         self.rows.addWidget(self.lay)
+        self.drop = button("Forget the points of the ground", self.drop_ground)
+        self.rows.addWidget(self.drop)
         self.metres = NumberField(METRES, 1.0)
         self.metres.setAccessibleName("Distance between the two, metres")
         self.rows.addWidget(Row("They are apart", self.metres))
@@ -59,8 +62,11 @@ class ScenePanel(ScrollColumn):
         self.above = button("Filmed from above", self.toggle_above)
         self.above.setCheckable(True)
         self.rows.addWidget(self.above)
-        self.forget = button("Forget the known length", lambda: self._edit(scene.set_length, None))
+        self.forget = button("Forget the known length", self.forget_length)
         self.rows.addWidget(self.forget)
+        self.rows.addWidget(separator())
+        self.assumed = Assumptions()
+        self.rows.addWidget(self.assumed)
         self.rows.addStretch(1)
 
     def show_scene(self, project: Project, points: tuple[int, ...], tracks: tuple[str, ...], frame: int) -> None:
@@ -78,6 +84,8 @@ class ScenePanel(ScrollColumn):
         self.scale.setEnabled((len(points), len(tracks)) in ((2, 0), (0, 2)))
         self.clear.setEnabled(bool(points or tracks))
         choice = project.document.world
+        self.drop.setEnabled(choice.ground == "plane" and bool(choice.plane_points))
+        self.assumed.show_world(project, tracks)
         for kind, each in self.grounds.items():
             each.setChecked(kind == choice.ground)
             each.setIcon(icons.icon("solution", "accent") if kind == choice.ground else QIcon())
@@ -92,37 +100,32 @@ class ScenePanel(ScrollColumn):
             note = "The cameras have not been solved yet: run what is missing."
         else:
             note = "The ground has not been laid yet: run what is missing."
-        flat = path is not None and path.verdict in ("static", "rotation")
+        flat = path is not None and path.verdict in ground_edits.FLAT
         lead = "No parallax: assume a ground plane or a constant depth, or skip this. " if flat else ""
         self.verdict.setText(lead + note)
 
     def _path(self) -> Any:
         return self.project.result(self.project.session.stages.cameras) if self.project is not None else None
 
-    def _edit(self, make: Callable[..., Any], *values: object, **options: object) -> None:
-        if self.project is not None and self.project.edit(make, *values, **options):
-            self.update_world()
-
-    def update_world(self) -> None:
-        """Lay the ground anew where the cameras are there: that is quick."""
-        project = self.project
-        if project is not None and self._path() is not None:
-            world = project.session.stages.world
-            if project.state(world) in ("missing", "stale") and world.why_blocked() is None:
-                project.start("Laying the ground", world)
-
     def choose(self, kind: str) -> None:
         """Choose where contacts lie; points chosen before for a plane stay."""
-        if self.project is None:
-            return
-        choice = self.project.document.world
-        kept = choice.plane_points if kind == "plane" else ()
-        self._edit(scene.set_ground, kind, plane_points=kept, depth_tracks=choice.depth_tracks, depth=choice.depth)
+        if self.project is not None:
+            ground_edits.choose(self.project, kind)
+
+    def drop_ground(self) -> None:
+        """Forget the points that the ground was laid through."""
+        if self.project is not None:
+            ground_edits.drop_points(self.project)
+
+    def forget_length(self) -> None:
+        """Nothing is known of the scale any more."""
+        if self.project is not None:
+            ground_edits.change(self.project, scene.set_length, None)
 
     def toggle_above(self) -> None:
         """Say whether the camera looks down on the subject."""
         if self.project is not None:
-            self._edit(scene.set_from_above, not self.project.document.world.from_above)
+            ground_edits.change(self.project, scene.set_from_above, not self.project.document.world.from_above)
 
     def _places(self) -> list[tuple[float, float, float]]:
         path = self._path()
@@ -131,7 +134,8 @@ class ScenePanel(ScrollColumn):
 
     def lay_ground(self) -> None:
         """The ground is the plane through the chosen points."""
-        self._edit(scene.set_ground, "plane", plane_points=self._places())
+        if self.project is not None:
+            ground_edits.change(self.project, scene.set_ground, "plane", plane_points=self._places())
 
     def set_length(self) -> None:
         """The two chosen points, or tracks, are so many metres apart."""
@@ -140,14 +144,14 @@ class ScenePanel(ScrollColumn):
             return
         if len(self.points) == 2:
             first, second = self._places()
-            self._edit(scene.set_length, KnownLength(first, second, metres))
+            ground_edits.change(project, scene.set_length, KnownLength(first, second, metres))
             return
         try:
             marks.length_between(project.session, *self.tracks, self.frame, metres)
         except (InputError, ValueError) as error:
             project.failed.emit(str(error), "")
             return
-        self.update_world()
+        ground_edits.lay_anew(project)
 
 
 def _words(text: str) -> QLabel:

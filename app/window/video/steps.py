@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from app.window import icons
 from app.window.controls import Elided, button, icon_button, label
 from app.window.project import Project
+from app.window.video.ground_edits import Fallback
 
 
 @dataclass(frozen=True)
@@ -97,10 +98,14 @@ def _words(state: str) -> str:
 
 
 class StepList(QWidget):
-    """Shows the steps; ``run`` asks for everything that is missing, ``ground`` for the choice of ground and scale."""
+    """Shows the steps; ``run`` asks for everything that is missing, ``ground`` for the choice of ground and scale.
+
+    ``assume`` names the fallback that was taken where the pictures do not tell.
+    """
 
     run = Signal()
     ground = Signal()
+    assume = Signal(str)
 
     def __init__(self) -> None:
         super().__init__()
@@ -109,6 +114,20 @@ class StepList(QWidget):
         self._column.setSpacing(2)
         self._rows: list[tuple[QLabel, QLabel, Elided]] = []
         self._shown: list[Step] = []
+        self._offered: tuple[Fallback, ...] = ()
+        self.offer = QWidget()
+        offer = QVBoxLayout(self.offer)
+        offer.setContentsMargins(0, 4, 0, 2)
+        offer.setSpacing(4)
+        self.lead = label("", "label")
+        self.lead.setWordWrap(True)
+        offer.addWidget(self.lead)
+        self._buttons = QHBoxLayout()
+        self._buttons.setSpacing(6)
+        offer.addLayout(self._buttons)
+        self.fallbacks: dict[str, QPushButton] = {}
+        self.offer.hide()
+        self._column.addWidget(self.offer)
         self.button = button("Run what is missing", self.run.emit, primary=True, name="run")
         self._column.addSpacing(4)
         self.ground_button = icon_button("ground", "Choose ground and scale", self.ground.emit, "B")
@@ -140,3 +159,21 @@ class StepList(QWidget):
             widgets[2].setText(step.text)
         missing = any(step.state in ("todo", "stale", "failed") for step in steps_)
         self.button.setEnabled(missing)
+
+    def show_fallbacks(self, lead: str, offered: tuple[Fallback, ...]) -> None:
+        """Offer what can be assumed in place of what the pictures do not tell, with the reason."""
+        if offered == self._offered:
+            return
+        self._offered = offered
+        for old in self.fallbacks.values():
+            self._buttons.removeWidget(old)
+            old.hide()
+            old.deleteLater()
+        self.fallbacks = {}
+        self.lead.setText(lead)
+        for each in offered:
+            made = button(each.text, lambda kind=each.kind: self.assume.emit(kind))
+            made.setToolTip(each.words)
+            self.fallbacks[each.kind] = made
+            self._buttons.addWidget(made, 1)
+        self.offer.setVisible(bool(offered))

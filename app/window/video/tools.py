@@ -34,7 +34,7 @@ HINTS: dict[str, str] = {
     "select": "Drag a point, or a mask's corner, edge or inside, to where it belongs. Wheel zooms, middle button pans.",
     "lasso": "Draw round the subject, roughly. Shift adds, Alt takes away; corners and edges can be pulled.",
     "point": "Click a place on the subject that can be recognised: it is followed through the clip.",
-    "contact": "Click a point where it begins to stand on the ground, then click it again in the last such frame.",
+    "contact": "Click a point where it begins to stand, then in the last such frame. C marks the chosen point here.",
     "ground": "Click recovered points or draw round them, for the ground or a length. Shift adds, Alt removes.",
     "pan": "Drag to move the picture.",
 }

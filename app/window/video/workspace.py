@@ -19,10 +19,10 @@ from app.window.picture_layers import Shown, layers, missing_evidence, track_at,
 from app.window.picture_notes import PictureNotes
 from app.window.project import Project
 from app.window.reading import Reading
-from app.window.video import edits_by_mouse, scene_picking
+from app.window.video import edits_by_mouse, ground_edits, scene_picking
 from app.window.video.mask_editing import is_part, moved, part_at
 from app.window.video.picture_menu import picture_menu
-from app.window.video.point_windows import PointWindows, Window, window_frames
+from app.window.video.point_windows import PointWindows, windows_of
 from app.window.video.proposals import ContactProposals
 from app.window.video.right_column import RightColumn
 from app.window.video.steps import steps
@@ -123,6 +123,7 @@ class VideoWorkspace(QWidget):
         self.inspector.list.chosen.connect(lambda name: self.project and self.project.select_track(name))
         self.scene.cleared.connect(self._choose_nothing)
         self.steps.run.connect(self.run_wanted)
+        self.steps.assume.connect(lambda kind: self.project and ground_edits.choose(self.project, kind))
         self.steps.ground.connect(lambda: self._choose_tool("ground"))
         self.propose_button.clicked.connect(lambda: self.command("propose_contacts"))
         self.accept_button.clicked.connect(lambda: self.command("accept_contacts"))
@@ -195,29 +196,16 @@ class VideoWorkspace(QWidget):
         self.inspector.show_points([(each, reading.track(each)) for each in project.document.tracks])
         self.right.show_proposals(self.proposals.count(project))
         self.steps.show_steps(steps(project))
+        self.steps.show_fallbacks(ground_edits.lead(project), ground_edits.fallbacks(project))
         self.canvas.update()
 
     def _show_windows(self) -> None:
         project, reading = self.project, self.reading
         assert project is not None
         assert reading is not None
-        track = next((each for each in project.document.tracks if each.id == project.track_id), None)
-        if track is None or not project.frame_count:
-            self.windows.show_windows([])
-            return
-        known = reading.track(track)
-        rows = window_frames(track, self.frame, project.frame_count)
-        made = []
-        for frame, caption in rows:
-            x, y = known.positions[frame]
-            place = (float(x), float(y)) if x == x else None
-            note = f"sure {known.confidence[frame]:.2f}" if known.state[frame] else "not solved"
-            clicked = frame in track.clicks
-            now = frame == self.frame
-            made.append(Window(frame, place, caption, "by you" if clicked else note, clicked, now))
-        self.windows.show_windows(made)
+        self.windows.show_windows(windows_of(project, reading, self.frame))
         if self.loader is not None:
-            self.loader.also([frame for frame, _ in rows])
+            self.loader.also([each.frame for each in self.windows.windows])
 
     def _switch(self, name: str, on: bool) -> None:
         setattr(self.shown, name, on)
@@ -353,7 +341,10 @@ class VideoWorkspace(QWidget):
 
     def command(self, name: str) -> bool:
         """Do a command of this workspace; says whether it was one."""
-        if name.startswith("tool_"):
+        if name == "tool_contact" and self.tool == "contact" and self.project is not None:
+            self.contact_start, sentence = edits_by_mouse.contact_by_key(self.project, self.frame, self.contact_start)
+            self.hint.emit(sentence or HINTS["contact"])
+        elif name.startswith("tool_"):
             self._choose_tool(name.removeprefix("tool_"))  # type: ignore[arg-type]
         elif name.startswith("layer_"):
             self.layer_buttons[name.removeprefix("layer_")].toggle()
