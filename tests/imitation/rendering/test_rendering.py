@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from imitation.errors import Cancelled, InputError
@@ -48,6 +48,7 @@ def test_balls_are_drawn_where_the_camera_projects_them(seed: int, size: tuple[i
 
 
 @settings(deadline=None, max_examples=60)
+@example(seed=112944)  # a surface 0.05 in front of the camera
 @given(seed=st.integers(0, 10**6))
 def test_depth_and_weights_are_those_of_the_ray(seed: int) -> None:
     """Each sample's weights and depth are those of its ray, though corners lie behind the camera."""
@@ -58,12 +59,13 @@ def test_depth_and_weights_are_those_of_the_ray(seed: int) -> None:
     faces = np.array([[0, 1, 2], [3, 4, 5]], np.int32)
     seen = rasterise(vertices, faces, camera, (40, 30))
     rays = camera.rays(np.stack(np.meshgrid(np.arange(40), np.arange(30)), axis=-1))
+    nearest = 1.001e-3 * np.abs(camera.depth(vertices)).max()  # what is closer is not drawn
     expected = np.full((30, 40), np.inf)
     for corners in vertices[faces]:
         # camera.centre + z ray = corner0 + s edge1 + t edge2
         system = np.stack([rays, *np.broadcast_to((corners[0] - corners[1:])[:, None, None], (2, 30, 40, 3))], axis=-1)
         z, s, t = np.moveaxis(np.linalg.solve(system, (corners[0] - camera.centre)[None, None, :, None])[..., 0], -1, 0)
-        inside = (s > 1e-6) & (t > 1e-6) & (s + t < 1 - 1e-6) & (z > 0.1)
+        inside = (s > 1e-6) & (t > 1e-6) & (s + t < 1 - 1e-6) & (z > nearest)
         expected = np.where(inside, np.minimum(expected, z), expected)
     found = np.isfinite(expected)
     np.testing.assert_allclose(seen.depth[found], expected[found], rtol=1e-4)
