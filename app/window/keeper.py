@@ -9,6 +9,7 @@ from app.stages.job import Job
 from app.stages.stage import Stage
 from app.window.project import Project
 
+FOLLOWING, SCENE, MOVING = "Following points", "Solving the cameras", "Moving the character"
 LINGER = 150
 IDLE = 1500
 """Milliseconds after the last stroke of a mask before it is carried through the clip."""
@@ -29,6 +30,7 @@ class Keeper(QObject):
         self._asked: dict[str, frozenset[str]] = {}
         self._jobs: dict[str, Job] = {}
         self._old: list[Job] = []
+        self._by_hand: set[str] = set()
         self._linger = QTimer(self)
         self._linger.setSingleShot(True)
         self._linger.setInterval(LINGER)
@@ -59,13 +61,27 @@ class Keeper(QObject):
             self.keep_up()
 
     def keep_up(self) -> None:
-        """Start what is missing and wanted automatically."""
+        """Start what is missing and wanted automatically; what was asked for by hand goes on as it has to be now."""
         if not self.automatic:
             return
         tracks = self._missing(self._tracks())
-        self._want("tracks", "Following points", tracks)
-        motion = self._missing(self._motion()) if self.propagate_on_release and self._moved_before() else []
-        self._want("motion", "Moving the character", [] if tracks else motion)
+        self._want("tracks", FOLLOWING, tracks)
+        self._want("scene", SCENE, self._missing(self._cameras()) if self._going_on("scene") else [])
+        motion = self._missing(self._motion())
+        if self._going_on("motion"):
+            asked = self._asked["motion"]
+            self._want("motion", MOVING, [each for each in motion if self.propagate_on_release or each.key in asked])
+        else:
+            wanted = self.propagate_on_release and not tracks and self._moved_before()
+            self._want("motion", MOVING, motion if wanted else [])
+
+    def _going_on(self, kind: str) -> bool:
+        """Whether work that was asked for by hand is under way."""
+        return kind in self._by_hand and self._alive(kind)
+
+    def _alive(self, kind: str) -> bool:
+        job = self._jobs.get(kind)
+        return job is not None and job.state == "running" and not job.token.cancelled
 
     def _spread_from_here(self) -> None:
         """Let motion be solved outward from the frame in sight; the order changes no result."""
@@ -75,10 +91,13 @@ class Keeper(QObject):
 
     def run_missing(self) -> bool:
         """Start everything that is missing, whatever is wanted automatically; says whether there was anything."""
-        tracks, motion = self._missing(self._tracks()), self._missing([*self._cameras(), *self._motion()])
-        self._want("tracks", "Following points", tracks)
-        self._want("motion", "Moving the character", motion)
-        return bool(tracks or motion)
+        tracks, motion = self._missing(self._tracks()), self._missing(self._motion())
+        scene = self._missing(self._cameras())
+        self._by_hand = {"scene", "motion"}
+        self._want("tracks", FOLLOWING, tracks)
+        self._want("scene", SCENE, scene)
+        self._want("motion", MOVING, motion)
+        return bool(tracks or scene or motion)
 
     def _moved_before(self) -> bool:
         """Whether a motion was solved before: only what was there once is kept up without being asked for."""
@@ -110,8 +129,7 @@ class Keeper(QObject):
 
     def _want(self, kind: str, label: str, stages: list[Stage]) -> None:
         keys = frozenset(stage.key for stage in stages)
-        running = self._jobs.get(kind)
-        alive = running is not None and running.state == "running"
+        running, alive = self._jobs.get(kind), self._alive(kind)
         if alive and (keys == self._asked.get(kind) or (keys and keys < self._asked.get(kind, frozenset()))):
             return
         if running is not None and alive:
@@ -123,6 +141,7 @@ class Keeper(QObject):
             self._jobs[kind] = self.project.start(label, *stages)
         else:
             self._jobs.pop(kind, None)
+            self._by_hand.discard(kind)
 
     def _give_up_old(self) -> None:
         for job in self._old:

@@ -81,6 +81,8 @@ class Hands:
         QTimer.singleShot(50, type_)
         ask()
         assert answered, "no dialog asked"
+        self.shell.activateWindow()  # without a screen nobody gives it back the keys
+        wait_for(self.shell.isActiveWindow)
 
     def go(self, frame: int) -> None:
         """Go to a frame by Home and the arrow keys, and wait for its picture."""

@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.model.edits import scene
+from app.model.edits import scene, tracks
 from app.window.shell import Shell
 from app.window.video.assumptions import Assumptions
 from tests.window.conftest import settle, wait_for
@@ -174,3 +174,18 @@ def test_drawn_masks_are_carried_when_nobody_draws_any_more(shell: Shell) -> Non
     project.undo()
     settle(500)
     assert "masks" not in keeper._jobs, "without masks there is nothing to carry"
+
+
+def test_what_was_asked_for_goes_on_while_points_are_solved_and_named(shell: Shell) -> None:
+    """Ctrl+Enter with points, cameras and motion missing; a name is typed meanwhile: all of it is solved in the end."""
+    project = shell.project
+    project.edit(scene.set_camera, "solve")
+    track = project.document.tracks[0]
+    x, y = track.clicks[8]
+    project.edit(tracks.set_click, track.id, 8, (x + 1.0, y))
+    QTest.keyClick(shell, Qt.Key.Key_Return, CONTROL)
+    project.edit(tracks.rename_track, track.id, "paw")
+    wait_for(lambda: not project.progress, 90)
+    stages = project.session.stages
+    wanted = (stages.track(track.id), stages.cameras, stages.world, stages.animation(project.character_id))
+    assert [project.state(each) for each in wanted] == ["fresh"] * 4
