@@ -50,6 +50,11 @@ class History:
         return self._present
 
     @property
+    def saved(self) -> Version | None:
+        """The version that lies in the project folder; None where it was dropped with a cut-off branch."""
+        return self._saved
+
+    @property
     def undo_label(self) -> str | None:
         """What undo takes back, None at the beginning."""
         return self._versions[self._present].label if self._present else None

@@ -53,6 +53,8 @@ class Dispatch:
             "propagate": keeper.run_missing,
             "video": lambda: shell.show_workspace("video"),
             "character": lambda: shell.show_workspace("character"),
+            "history": lambda: shell.side.ask_for("history"),
+            "log": lambda: shell.side.ask_for("log"),
             "light": self.switch_look,
             "keys": lambda: KeySheet(shell).show(),
         }

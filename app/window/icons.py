@@ -16,6 +16,7 @@ NAMES = {
     "character": "cat",
     "graph": "graph-outline",
     "undo": "undo",
+    "log": "message-text-outline",
     "redo": "redo",
     "cancel": "close-circle-outline",
     "close": "close",

@@ -81,6 +81,8 @@ COMMANDS = (
     Command("look_camera", "Look through the camera", ("1",), "View"),
     Command("look_side", "Look from the side", ("2",), "View"),
     Command("look_orbit", "Orbit", ("3",), "View"),
+    Command("history", "History", ("Ctrl+H",), "View"),
+    Command("log", "Messages", ("Ctrl+L",), "View"),
     Command("light", "Light or dark", (), "View"),
     Command("keys", "Keys", ("?",), "View"),
     Command("tool_select", "Select", ("V",), "Tools"),

@@ -94,6 +94,14 @@ class Project(QObject):
             version = self.session.redo()
             self._point_to(version.frame, f"Done again: {version.label}")
 
+    def jump(self, index: int) -> None:
+        """Go to a version of the history; where its edit shows elsewhere, say where."""
+        history = self.session.history
+        if index != history.present:
+            self.session.jump(index)
+            version = history.versions[index]
+            self._point_to(version.frame, f"Gone to: {version.label}")
+
     def _point_to(self, frame: int | None, sentence: str) -> None:
         self.shown_at.emit(self.frame if frame is None else frame, sentence)
 

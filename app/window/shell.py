@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QImage
-from PySide6.QtWidgets import QMainWindow, QSplitter, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QSplitter, QStackedWidget, QVBoxLayout, QWidget
 
 from app.actions.session import Session
 from app.model.document import Document
@@ -19,6 +19,7 @@ from app.window.file_commands import FileCommands
 from app.window.lanes_of import character_lanes, video_lanes
 from app.window.navigation import Navigator
 from app.window.opening import Opened
+from app.window.panels import SidePanel
 from app.window.project import Project
 from app.window.statusline import StatusLine
 from app.window.timeline_panel import TimelinePanel
@@ -44,6 +45,7 @@ class Shell(QMainWindow):
         self.setAcceptDrops(True)
         self.bar, self.status, self.timeline = TopBar(), StatusLine(), TimelinePanel()
         self.video, self.character, self.welcome = VideoWorkspace(), CharacterWorkspace(viewport), Welcome()
+        self.side = SidePanel()
         self.calls = BackgroundCalls(self)
         self.files = FileCommands(self)
         self.navigator = Navigator(lambda: self.project, self)
@@ -79,9 +81,11 @@ class Shell(QMainWindow):
         self.split.splitterMoved.connect(self._resized_by_hand)
         body = QWidget()
         body.setObjectName("body")
-        inner = QVBoxLayout(body)
+        inner = QHBoxLayout(body)
         inner.setContentsMargins(8, 8, 8, 8)
-        inner.addWidget(self.split)
+        inner.setSpacing(8)
+        inner.addWidget(self.split, 1)
+        inner.addWidget(self.side)
         central = QWidget()
         column = QVBoxLayout(central)
         column.setContentsMargins(0, 0, 0, 0)
@@ -129,6 +133,7 @@ class Shell(QMainWindow):
         self._attach()
         self.bar.show_document(project)
         self.bar.show_work(project)
+        self.side.attach(project)
         self.show_workspace("video")
         self._autosave.start()
         self.setFocus()
@@ -243,11 +248,13 @@ class Shell(QMainWindow):
             notes.say(sentence + where)
 
     def tell(self, sentence: str, details: str = "") -> None:
-        """Say what went wrong in the panel that is seen."""
+        """Say what went wrong in the panel that is seen, and keep it among the messages."""
+        self.side.log.add(sentence, details)
         self._error_bar().tell(sentence, details)
 
     def tell_note(self, sentence: str) -> None:
-        """Say what went well, or is worth knowing."""
+        """Say what went well, or is worth knowing; kept among the messages."""
+        self.side.log.add(sentence, level="note")
         self._error_bar().tell(sentence, level="note")
 
     def _error_bar(self) -> ErrorBar:

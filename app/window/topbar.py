@@ -56,8 +56,8 @@ class TopBar(QWidget):
     def _menu(self) -> QMenu:
         menu = QMenu(self)
         for command in COMMANDS:
-            if command.group == "Project" or command.id in ("light", "keys"):
-                if command.id in ("add_clip", "light", "export"):
+            if command.group == "Project" or command.id in ("history", "log", "light", "keys"):
+                if command.id in ("add_clip", "history", "export"):
                     menu.addSeparator()
                 action = menu.addAction(command.text, lambda id_=command.id: self.wanted.emit(id_))
                 key = shown_key(command.id)
