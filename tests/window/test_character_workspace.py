@@ -360,11 +360,11 @@ def test_pairing_by_two_clicks(posed: Shell) -> None:
     pixels = view(posed).lens().to_widget(view(posed).vertices)
     middle = np.array(place(posed, before))
     for number in np.argsort(np.hypot(*(pixels - middle).T)):
-        x, y = pixels[number]
-        found = view(posed).vertex_at((float(x), float(y)))
+        clicked = at(*pixels[number])  # whole pixels, as a click has
+        found = view(posed).vertex_at((clicked.x(), clicked.y()))
         if found == number and number not in taken:
             break
-    QTest.mouseClick(view(posed), LEFT, pos=at(x, y))
+    QTest.mouseClick(view(posed), LEFT, pos=clicked)
     assert character(posed).pairs[track.id] not in (before, *(taken - {before}))
     QTest.keyClick(posed, Qt.Key.Key_Z, CONTROL)
     assert character(posed).pairs[track.id] == before
