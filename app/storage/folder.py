@@ -84,6 +84,8 @@ class ProjectFolder:
         """Give the autosaved document of a session that ended without saving, None where there is none to offer."""
         if not self.autosave_file.is_file():
             return None
+        if self.file.is_file() and self.autosave_file.stat().st_mtime_ns < self.file.stat().st_mtime_ns:
+            return None  # a save was cut off after the project was written, before the autosave was removed
         try:
             recovered = self._read(self.autosave_file)
         except InputError:

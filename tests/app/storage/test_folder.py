@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import os
 from pathlib import Path
 
 import numpy as np
@@ -123,6 +124,20 @@ def test_autosave_is_offered_until_saved(tmp_path: Path) -> None:
     assert folder.recoverable() == changed
     folder.save(changed)
     assert folder.recoverable() is None
+
+
+def test_an_autosave_older_than_the_project_is_superseded(tmp_path: Path) -> None:
+    """A save that was cut off before it removed the autosave does not bring older work back."""
+    folder = ProjectFolder.create(tmp_path / "film", Document())
+    folder.autosave(scene.rename(Document(), "older").document)
+    autosaved = folder.autosave_file.read_bytes()
+    newer = scene.rename(Document(), "newer").document
+    folder.save(newer)
+    folder.autosave_file.write_bytes(autosaved)
+    written = folder.file.stat().st_mtime_ns
+    os.utime(folder.autosave_file, ns=(written - 1000, written - 1000))
+    assert folder.recoverable() is None
+    assert folder.load() == newer
 
 
 def test_a_damaged_autosave_is_no_obstacle(tmp_path: Path) -> None:
