@@ -48,7 +48,7 @@ def spans(document: Document, track: Track) -> tuple[Stage, ...]:
     if clip is None:
         return (Stage(f"span/{track.id}", f"Tracking {track.name}", _span, blocked=NO_CLIP),)
     clicks: list[CLICK] = [(frame, *place) for frame, place in track.clicks.items()]
-    plans = plan_spans(clicks, clip.frame_count, [(gap.first, gap.last) for gap in track.absent])
+    plans = plan_spans(clicks, clip.frame_count, [(gap.first, gap.last) for gap in track.absent], _guesses(track))
     needs = (flow(document), masks(document)) if track.masked else (flow(document),)
     return tuple(
         Stage(
@@ -57,7 +57,7 @@ def spans(document: Document, track: Track) -> tuple[Stage, ...]:
             _span,
             (clip, track.mode, plan),
             needs,
-            version=3,
+            version=4,
             weight=0.004 * (plan.last - plan.first),
         )
         for plan in plans
@@ -71,7 +71,14 @@ def track(document: Document, track: Track) -> Stage:
         return Stage(f"track/{track.id}", f"Tracking {track.name}", _track, blocked=NO_CLIP)
     clicks = tuple((frame, *place) for frame, place in track.clicks.items())
     inputs = (document.clip.frame_count, clicks, track.absent, track.occluded)
-    return Stage(f"track/{track.id}", f"Tracking {track.name}", _track, inputs, spans(document, track), weight=0.01)
+    return Stage(
+        f"track/{track.id}", f"Tracking {track.name}", _track, inputs, spans(document, track), version=2, weight=0.01
+    )
+
+
+def _guesses(track: Track) -> tuple[int, ...]:
+    """Clicks in frames where the user says that the point is hidden: only they change what is followed."""
+    return tuple(frame for frame in track.clicks if any(frame in gap for gap in track.occluded))
 
 
 def _flow(context: Context, inputs: tuple[Clip]) -> Any:
@@ -111,14 +118,23 @@ def _span(context: Context, inputs: tuple[Clip, str, Any], field: Any, subject: 
         until = plan.first
     elif plan.right is None:
         until = plan.last
-    return track_span(prepared, plan.left, plan.right, until=until, mode=mode, progress=context.progress)  # type: ignore[arg-type]
+    return track_span(
+        prepared,
+        plan.left,
+        plan.right,
+        until=until,
+        mode=mode,  # type: ignore[arg-type]
+        hidden=plan.guessed,
+        progress=context.progress,
+    )
 
 
 def _track(context: Context, inputs: tuple[int, tuple[CLICK, ...], Any, Any], *solved: Any) -> Any:
     from imitation.tracking import assemble_track
 
     count, clicks, absent, occluded = inputs
-    found = assemble_track(count, clicks, solved, [(gap.first, gap.last) for gap in absent])
+    guesses = [frame for frame, _, _ in clicks if any(frame in gap for gap in occluded)]
+    found = assemble_track(count, clicks, solved, [(gap.first, gap.last) for gap in absent], guesses)
     if not occluded:
         return found
     state = found.state.copy()

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from imitation.tracking.chain import Array, Chain
-from imitation.tracking.track import Span, SpanPlan, States
+from imitation.tracking.guesses import anchored, toward_guess
+from imitation.tracking.track import GUESS, Span, SpanPlan, States
 
 # Share of frames within 8 px of a person's click by the motion cost of their span, measured on real clips;
 # the last knot on rendered animals.
@@ -19,7 +20,7 @@ MATCH_SHARES = (0.4, 0.68, 0.84, 0.91, 0.96, 1.0)
 def judge(plan: SpanPlan, chain: Chain, size: tuple[int, int], robust: bool, masked: bool = False) -> Span:
     """Turn a chain into a span: natural order, confidence, state, and NaN where an open end leaves the picture."""
     height, width = size
-    backwards = plan.left is None
+    backwards = plan.left is None or (robust and anchored(plan) == (False, True))
     turn = slice(None, None, -1 if backwards else 1)
     frames = len(chain.positions)
     x, y = chain.positions.T
@@ -27,7 +28,10 @@ def judge(plan: SpanPlan, chain: Chain, size: tuple[int, int], robust: bool, mas
     positions = chain.positions.copy()
     state: States = np.full(frames, "visible", dtype="<U8")
     closed = plan.left is not None and plan.right is not None
-    confidence = _confidence(chain, closed, masked) if robust else np.full(frames, 0.5)
+    guessed = closed and robust and len(plan.guessed) > 0
+    confidence = _confidence(chain, closed and not guessed, masked) if robust else np.full(frames, 0.5)
+    if guessed:
+        confidence = toward_guess(confidence)
     if robust:
         state[chain.hidden] = "occluded"
         confidence[chain.hidden] *= 0.5
@@ -38,7 +42,7 @@ def judge(plan: SpanPlan, chain: Chain, size: tuple[int, int], robust: bool, mas
         state[gone:], positions[gone:], confidence[gone:] = "outside", np.nan, 0.0
     state[0], confidence[0] = "visible", 1.0
     if closed:
-        state[-1], confidence[-1] = "visible", 1.0
+        state[-1], confidence[-1] = ("occluded", GUESS) if guessed else ("visible", 1.0)
     steps = chain.steps
     cost = np.concatenate([[0.0], steps[1:][::-1]]) if backwards else steps.copy()
     return Span(plan, positions[turn].copy(), confidence[turn].copy(), state[turn].copy(), cost)

@@ -13,6 +13,7 @@ from imitation.progress import Progress, part, silent
 from imitation.tracking.chain import Chain
 from imitation.tracking.clip import PreparedClip, prepare_clip
 from imitation.tracking.flow import FlowField, Picture
+from imitation.tracking.guesses import anchored, give_way, guessed_span
 from imitation.tracking.judge import judge
 from imitation.tracking.paper import PaperOptions, solve_paper
 from imitation.tracking.robust import SUBJECT, RobustOptions, solve_robust
@@ -47,9 +48,12 @@ def _options(mode: str, options: Options | None, masked: bool) -> Options:
 def _solve(clip: PreparedClip, plan: SpanPlan, options: Options, progress: Progress | None) -> Span:
     frames = range(plan.first, plan.last + 1)
     left, right = plan.left, plan.right
-    backwards = left is None
+    robust, seen = isinstance(options, RobustOptions), anchored(plan)
+    if robust and plan.guessed and not any(seen):
+        return guessed_span(plan)
+    backwards = left is None or (robust and seen == (False, True))
     order = list(reversed(frames)) if backwards else list(frames)
-    start, stop = (right, None) if backwards else (left, right)
+    start, stop = (right, left) if backwards else (left, right)
     if start is None:
         raise InputError(f"The span of frames {plan.first} to {plan.last} has no click at either end; click in one.")
     end = None if stop is None else stop[1:]
@@ -57,9 +61,10 @@ def _solve(clip: PreparedClip, plan: SpanPlan, options: Options, progress: Progr
     if isinstance(options, PaperOptions):
         chain = solve_paper(clip, order, start[1:], end, options, progress)
     else:
-        chain = solve_robust(clip, order, start[1:], end, options, progress)
+        chain = solve_robust(clip, order, start[1:], end, options, progress, guess=bool(plan.guessed))
+        chain = give_way(chain) if plan.guessed and end is not None else chain
     masked = clip.masks is not None
-    return judge(plan, chain, (clip.height, clip.width), isinstance(options, RobustOptions), masked)
+    return judge(plan, chain, (clip.height, clip.width), robust, masked)
 
 
 def track_span(
@@ -71,6 +76,7 @@ def track_span(
     mode: Mode = "robust",
     options: Options | None = None,
     mask: Masks | None = None,
+    hidden: Iterable[int] = (),
     flow: FlowField | Literal["lk"] | None = None,
     progress: Progress | None = None,
 ) -> Span:
@@ -82,7 +88,7 @@ def track_span(
     ----------
     left, right : (frame, x, y) of the clicks at the ends; None for an open end.
     until : frame where an open span ends, included; the first or last frame of the clip where omitted.
-    frames, mode, options, mask, flow, progress : as for ``track_point``.
+    frames, mode, options, mask, hidden, flow, progress : as for ``track_point``.
 
     Raises
     ------
@@ -99,7 +105,8 @@ def track_span(
         last = clip.count - 1 if until is None else until
     if not 0 <= first < last < clip.count:
         raise InputError(f"A span must run forward inside the clip, but this one goes from frame {first} to {last}.")
-    return _solve(clip, SpanPlan(left, right, first, last), chosen, progress)
+    guessed = tuple(click[0] for click in given if click[0] in set(hidden))
+    return _solve(clip, SpanPlan(left, right, first, last, guessed), chosen, progress)
 
 
 def track_point(
@@ -109,6 +116,7 @@ def track_point(
     mode: Mode = "robust",
     mask: Masks | None = None,
     absent: Iterable[Interval] = (),
+    hidden: Iterable[int] = (),
     flow: FlowField | Literal["lk"] | None = None,
     options: Options | None = None,
     progress: Progress | None = None,
@@ -127,6 +135,9 @@ def track_point(
         is behind them, and places off it are dear. Not used by the mode "paper".
     absent : intervals (first, last), frames included, where the track does not exist: it ends before them and
         starts anew after them, where a click is.
+    hidden : frames where something is in front of the point. A click in one of them says where the user guesses the
+        point: the path passes through it, but what is seen there is not what is followed, and confidence is low.
+        The mode "paper" follows it all the same.
     flow : dense flow from ``compute_flow``; None computes what is missing; "lk" gives a quick preview without it.
     options : settings of the mode.
     progress : gets the share done, several times a second; may raise ``Cancelled``.
@@ -144,7 +155,8 @@ def track_point(
     chosen = _options(mode, options, clip.masks is not None)
     marks = check_clicks(clicks, clip.count, clip.height, clip.width)
     gaps = check_absent(absent, clip.count)
-    plans = plan_spans(marks, clip.count, gaps)
+    unseen = tuple(hidden)
+    plans = plan_spans(marks, clip.count, gaps, unseen)
     (progress or silent)(0.0)
     total, done, spans = sum(plan.last - plan.first for plan in plans), 0, []
     for plan in plans:
@@ -152,4 +164,4 @@ def track_point(
         spans.append(_solve(clip, plan, chosen, part(progress, done / total, (done + length) / total)))
         done += length
     (progress or silent)(1.0)
-    return assemble_track(clip.count, marks, spans, gaps)
+    return assemble_track(clip.count, marks, spans, gaps, unseen)

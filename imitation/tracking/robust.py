@@ -74,7 +74,7 @@ def _follow_flow(
 
 
 def _guesses(
-    clip: PreparedClip, order: Sequence[int], start: Place, stop: Place | None, half: int, report: Progress
+    clip: PreparedClip, order: Sequence[int], start: Place, stop: Place | None, half: int, report: Progress, guess: bool
 ) -> tuple[Array, Array]:
     """Guessed paths (m, p, 2) from the clicks, and the centres (m, c, 2) around which look-alikes are sought."""
     t = np.linspace(0, 1, len(order))[:, None]
@@ -87,6 +87,11 @@ def _guesses(
             ahead.append(_follow_flow(clip, order, start, sources[1], True))  # masks may be wrong
     if stop is None:
         return np.stack(ahead, axis=1), np.stack(ahead, axis=1)
+    line = (1 - t) * np.array(start) + t * np.array(stop)
+    if guess:
+        # Nothing is followed back from there: what is seen is in front of the point.
+        bent = [forward + t * (np.array(stop) - forward[-1]) for forward in ahead]
+        return np.stack([*ahead, line, *bent], axis=1), np.stack([line, ahead[0]], axis=1)
     back = [_follow_local(clip, backwards, stop, half, sources[2])[::-1]]
     if not clip.preview:
         back.append(_follow_flow(clip, backwards, stop, sources[3])[::-1])
@@ -95,7 +100,6 @@ def _guesses(
     paths = []
     for forward, backward in zip(ahead, back, strict=True):
         paths += [forward, backward, (1 - t) * forward + t * backward]
-    line = (1 - t) * np.array(start) + t * np.array(stop)
     centres = [line, paths[2]]
     paths.append(line)
     for forward, backward in zip(ahead, back, strict=True):
@@ -131,19 +135,22 @@ def solve_robust(
     stop: Place | None,
     options: RobustOptions,
     progress: Progress | None,
+    guess: bool = False,
 ) -> Chain:
     """Solve one run of neighbouring frames, ``order``, from a click in its first to a click in its last (or open).
 
     Candidates of a frame are the guessed paths and the look-alikes of the clicks; dynamic programming picks the
     chain of least cost: appearance against both clicks, and disagreement of each step with the flow both ways.
+    Where the last click is a ``guess`` of a hidden place, the chain ends there but only the first says how it looks.
     """
     from imitation.tracking.kernels import HALF_TO_FLOAT
     from imitation.tracking.robust_kernels import cheapest_chain, describe, flows_at, kinship, search
 
     half = options.window // 2
-    paths, centres = _guesses(clip, order, start, stop, options.local_window // 2, part(progress, 0.0, 0.4))
+    paths, centres = _guesses(clip, order, start, stop, options.local_window // 2, part(progress, 0.0, 0.4), guess)
     frames, guesses = paths.shape[:2]
-    clicks = [(order[0], start)] if stop is None else [(order[0], start), (order[-1], stop)]
+    one = stop is None or guess
+    clicks = [(order[0], start)] if stop is None or guess else [(order[0], start), (order[-1], stop)]
     looks = _Appearance.of(clip, clicks, half)
     searching = options.look_alikes > 0 and not clip.preview
     most = guesses + (options.look_alikes * len(clicks) * centres.shape[1] if searching else 0)
@@ -156,7 +163,7 @@ def solve_robust(
             places[i, 0] = start if i == 0 or stop is None else stop
         else:
             places[i, :guesses] = paths[i]
-            count, gap = guesses, i if stop is None else min(i, frames - 1 - i)
+            count, gap = guesses, i if one else min(i, frames - 1 - i)
             if searching:
                 radius = min(10.0 + 3 * gap, options.reach)
                 for x, y in centres[i]:
@@ -165,7 +172,7 @@ def solve_robust(
                         looks.coarse_norms, options.look_alikes, places[i], count,
                     )  # fmt: skip
             counts[i] = count
-        weight = 1.0 if stop is None else (frames - 1 - i) / (frames - 1)
+        weight = 1.0 if one else (frames - 1 - i) / (frames - 1)
         describe(levels[0], places[i], counts[i], looks.fine, looks.norms, weight, mask, facts[i])
         for other, out in ((i + 1, ahead), (i - 1, back)):
             if 0 <= other < frames and not clip.preview:
@@ -189,7 +196,7 @@ def solve_robust(
         kin[i] = kinship(pictures[0], *positions[i - 1], pictures[1], *positions[i], KIN_WINDOW // 2)
     hidden = hidden_frames(match, kin)
     if options.settle > 0 and hidden.any():
-        _settle(clip, order, positions, match, hidden, looks, stop is not None, options)
+        _settle(clip, order, positions, match, hidden, looks, stop is not None, options, guess)
     return Chain(positions, steps, match, gap_of, margin, hidden)
 
 
@@ -202,6 +209,7 @@ def _settle(
     looks: _Appearance,
     closed: bool,
     options: RobustOptions,
+    guess: bool,
 ) -> None:
     """Draw the path beside hidden frames onto places that look like the clicks; frames between two such move along.
 
@@ -216,7 +224,7 @@ def _settle(
         near[max(at - BESIDE, 0) : at + BESIDE + 1] = True
     sure = ~near
     for i in np.flatnonzero(near[: -1 if closed else frames]).tolist():
-        weight = (frames - 1 - i) / (frames - 1) if closed else 1.0
+        weight = (frames - 1 - i) / (frames - 1) if closed and not guess else 1.0
         x, y, found = settle(
             clip.looks(order[i])[0], *positions[i], looks.fine, looks.norms, weight, options.settle, options.likeness
         )  # fmt: skip

@@ -17,6 +17,8 @@ States = NDArray[np.str_]
 State = Literal["visible", "occluded", "outside"]
 Click = tuple[int, float, float]
 Interval = tuple[int, int]
+GUESS = 0.6
+"""Confidence of a click where the point is hidden."""
 
 
 @attrs.frozen
@@ -27,12 +29,14 @@ class SpanPlan:
     ----------
     left, right : (frame, x, y) of the click at that end, or None where the end is open.
     first, last : frames of the span, both included (the clicks' own frames belong to it).
+    guessed : frames of those of its clicks where the user says that the point is hidden.
     """
 
     left: Click | None
     right: Click | None
     first: int
     last: int
+    guessed: tuple[int, ...] = ()
 
 
 @attrs.frozen(eq=False)
@@ -63,7 +67,7 @@ class Track:
     ----------
     positions : (n, 2) pixels (x right, y down, pixel centres at integers), NaN where the track is absent.
     confidence : (n,) in [0, 1]: the expected share of frames like this one within 8 px of a person's click
-        (854 x 480); 1 at clicks, 0 where absent.
+        (854 x 480); 1 at clicks (0.6 where hidden), 0 where absent.
     state : (n,) "visible"; "occluded" (nothing there looks like the clicks, and the flow does not lead there);
         "outside" (left the picture, or ended by the user).
     cost : (n,) cost of the step into each frame; its sum over a span ranks spans and tracks.
@@ -118,12 +122,15 @@ def check_absent(absent: Iterable[Interval], count: int) -> tuple[Interval, ...]
     return tuple(joined)
 
 
-def plan_spans(clicks: Sequence[Click], count: int, absent: Sequence[Interval] = ()) -> tuple[SpanPlan, ...]:
+def plan_spans(
+    clicks: Sequence[Click], count: int, absent: Sequence[Interval] = (), hidden: Iterable[int] = ()
+) -> tuple[SpanPlan, ...]:
     """Cut a clip of ``count`` frames into spans: a span never passes a click nor an absent interval.
 
-    A change of one click changes only the plans beside it, so results kept by plan stay valid elsewhere.
+    A change of one click changes only the plans beside it, so results kept by plan stay valid elsewhere. ``hidden``
+    are frames where the point cannot be seen: a click in one of them is a guess.
     """
-    clicks, absent = sorted(clicks), check_absent(absent, count)
+    clicks, absent, unseen = sorted(clicks), check_absent(absent, count), set(hidden)
     for frame, _, _ in clicks:
         for first, last in absent:
             if first <= frame <= last:
@@ -142,14 +149,23 @@ def plan_spans(clicks: Sequence[Click], count: int, absent: Sequence[Interval] =
             first = before + 1 if left is None else left[0]
             last = after - 1 if right is None else right[0]
             if first < last:
-                plans.append(SpanPlan(left, right, first, last))
+                guessed = tuple(end[0] for end in (left, right) if end is not None and end[0] in unseen)
+                plans.append(SpanPlan(left, right, first, last, guessed))
     return tuple(plans)
 
 
 def assemble_track(
-    count: int, clicks: Sequence[Click], spans: Iterable[Span], absent: Sequence[Interval] = ()
+    count: int,
+    clicks: Sequence[Click],
+    spans: Iterable[Span],
+    absent: Sequence[Interval] = (),
+    hidden: Iterable[int] = (),
 ) -> Track:
-    """Put solved spans together; frames that no span and no click reaches are absent (NaN, "outside")."""
+    """Put solved spans together; frames that no span and no click reaches are absent (NaN, "outside").
+
+    Clicks in ``hidden`` frames are guesses of the place: occluded, and of low confidence.
+    """
+    unseen = set(hidden)
     positions, confidence = np.full((count, 2), np.nan), np.zeros(count)
     state, cost = np.full(count, "outside", dtype="<U8"), np.zeros(count)
     for span in spans:
@@ -159,7 +175,9 @@ def assemble_track(
         positions[here], confidence[here], state[here] = span.positions, span.confidence, span.state
         cost[tail] = span.cost[1:]
     for frame, x, y in clicks:
-        positions[frame], confidence[frame], state[frame] = (x, y), 1.0, "visible"
+        guess = frame in unseen
+        positions[frame] = x, y
+        confidence[frame], state[frame] = (GUESS, "occluded") if guess else (1.0, "visible")
     for array in (positions, confidence, state, cost):
         array.setflags(write=False)
     return Track(positions, confidence, state, cost, tuple(frame for frame, _, _ in clicks), tuple(absent))
