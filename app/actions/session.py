@@ -185,7 +185,9 @@ class Session:
 
     def _begin(self) -> None:
         self.media = Media(self.folder.locate)
-        self.cache = ResultCache(ResultStore(self.folder.results))
+        store = ResultStore(self.folder.results)
+        store.sweep()
+        self.cache = ResultCache(store)
         self.runner = Runner(self.cache, self.media, self._executor)
 
     def _end(self) -> None:

@@ -31,6 +31,10 @@ class ResultCache:
     def __contains__(self, stage: Stage) -> bool:
         return stage.key in self._held or (self.store is not None and stage.stored and stage.key in self.store)
 
+    def knows(self, stage: Stage) -> bool:
+        """Whether the project holds an earlier result of this stage, from other inputs."""
+        return self.store is not None and stage.stored and self.store.knows(stage.name)
+
     def get(self, stage: Stage) -> Any:
         """Give a result; raises ``KeyError`` when it has to be computed."""
         with self._lock:
@@ -47,7 +51,7 @@ class ResultCache:
         """Keep a result. A full disk is remembered in ``storing_failed``, the result stays in memory."""
         if self.store is not None and stage.stored:
             try:
-                self.store.save(stage.key, value)
+                self.store.save(stage.key, value, stage.name)
                 self.storing_failed = None
                 if size_of(value) > LARGE:
                     # The copy on the disk serves from here on, mapped, so that a long clip does not fill the memory.

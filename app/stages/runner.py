@@ -54,7 +54,8 @@ class Runner:
                 return "failed"
             if stage.why_blocked() is not None:
                 return "blocked"
-            return "stale" if stage.name in self._latest else "missing"
+            known = stage.name in self._latest or self.cache.knows(stage)
+            return "stale" if known else "missing"
 
     def why_failed(self, stage: Stage) -> str | None:
         """Give the sentence of the failure of this stage, None when it has not failed."""

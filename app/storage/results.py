@@ -6,8 +6,10 @@ import importlib
 import json
 import os
 import shutil
+import time
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import attrs
 import numpy as np
@@ -16,6 +18,8 @@ from app.formats.atomic import explained
 
 MAPPED = 1 << 22
 """Bytes from which on a file is mapped and not read."""
+ABANDONED = 600.0
+"""Seconds after which a half-written result is nobody's any more: its writer was killed."""
 _TRUSTED = ("imitation.", "tvmedit.", "app.")
 
 
@@ -28,9 +32,23 @@ class ResultStore:
     def __contains__(self, key: str) -> bool:
         return (self._at(key) / "value.json").is_file()
 
-    def save(self, key: str, value: Any) -> None:
+    def knows(self, name: str) -> bool:
+        """Whether a result of this name was ever stored, under whatever key."""
+        return self._mark(name).is_file()
+
+    def sweep(self) -> None:
+        """Remove what a killed process left half written."""
+        for part in self.folder.glob("*/.*.part"):
+            if time.time() - part.stat().st_mtime > ABANDONED:
+                shutil.rmtree(part, ignore_errors=True)
+
+    def save(self, key: str, value: Any, name: str = "") -> None:
         """Write a result; a result that is there already is left alone, for the same key means the same bits."""
         final = self._at(key)
+        if name and not self.knows(name):
+            with explained(final):
+                self._mark(name).parent.mkdir(parents=True, exist_ok=True)
+                self._mark(name).touch()
         if key in self:
             return
         beside = final.with_name(f".{final.name}.{os.getpid()}.part")
@@ -64,6 +82,9 @@ class ResultStore:
     def clear(self) -> None:
         """Delete all results; they can be computed again."""
         shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _mark(self, name: str) -> Path:
+        return self.folder / "names" / quote(name, safe="")
 
     def _at(self, key: str) -> Path:
         return self.folder / key[:2] / key

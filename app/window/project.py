@@ -178,12 +178,8 @@ class Project(QObject):
         return self.session.runner.state(stage)
 
     def motion_state(self, character_id: str) -> str:
-        """How a character's motion stands; what was moved before and lacks only its edits is stale."""
-        stages = self.session.stages
-        state = self.state(stages.animation(character_id))
-        if state == "missing" and stages.base(character_id) in self.session.cache:
-            return "stale"
-        return state
+        """How a character's motion stands."""
+        return self.state(self.session.stages.animation(character_id))
 
     def start(self, label: str, *stages: Stage) -> Job:
         """Compute stages in the background."""

@@ -95,6 +95,16 @@ def test_results_are_found_in_the_folder_later(tmp_path: Path) -> None:
     assert CALLS == ["a"]
 
 
+def test_a_later_session_knows_what_is_stale(tmp_path: Path) -> None:
+    """What an earlier session computed from other inputs is stale, what none computed is missing."""
+    for value, state in ((5, "missing"), (6, "stale")):
+        runner = Runner(ResultCache(ResultStore(tmp_path)), Media(lambda media: tmp_path))
+        assert runner.state(number("a", value)) == state
+        runner.run("a", (number("a", value),))
+        assert runner.state(number("b", value)) == "missing"
+        runner.close()
+
+
 def test_states(runner: Runner) -> None:
     """Missing, fresh, stale after a change, failed with its reason, blocked with what is missing."""
     a = number("a", 1)
@@ -207,7 +217,7 @@ def test_stages_run_in_other_processes(tmp_path: Path) -> None:
 def test_a_full_disk_costs_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """When results cannot be stored they stay in memory, and the cache says why."""
 
-    def full(self: ResultStore, key: str, value: Any) -> None:
+    def full(self: ResultStore, key: str, value: Any, name: str = "") -> None:
         raise InputError("The disk is full.")
 
     monkeypatch.setattr(ResultStore, "save", full)

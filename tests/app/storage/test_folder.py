@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import time
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,7 @@ from app.model.document import Document
 from app.model.edits import scene
 from app.storage.folder import ProjectFolder
 from app.storage.migrations import VERSION
-from app.storage.results import ResultStore
+from app.storage.results import ABANDONED, ResultStore
 from app.storage.schema import document_from_json, document_to_json
 from imitation import CameraPath, InputError
 from tests.app.strategies import documents, start
@@ -204,3 +205,26 @@ def test_a_result_of_foreign_code_is_not_run(tmp_path: Path) -> None:
     file.write_text(json.dumps({"class": "subprocess:Popen", "fields": {"args": "true"}}))
     with pytest.raises(KeyError):
         store.load("ab" * 16)
+
+
+def test_what_a_killed_process_left_is_swept(tmp_path: Path) -> None:
+    """Half-written results go once their writer cannot be at work any more; results and fresh parts stay."""
+    store = ResultStore(tmp_path)
+    store.save("ab12", {"kept": 1})
+    for name, age in ((".ab13.99.part", 2 * ABANDONED), (".ab14.99.part", 0.0)):
+        (tmp_path / "ab" / name).mkdir()
+        long_ago = time.time() - age
+        os.utime(tmp_path / "ab" / name, (long_ago, long_ago))
+    store.sweep()
+    assert sorted(path.name for path in (tmp_path / "ab").iterdir()) == [".ab14.99.part", "ab12"]
+    assert store.load("ab12") == {"kept": 1}
+
+
+def test_names_of_results_are_remembered(tmp_path: Path) -> None:
+    """A store opened anew knows that a stage had a result, though under another key."""
+    ResultStore(tmp_path).save("ab12", 1, "animation/c3")
+    again = ResultStore(tmp_path)
+    assert again.knows("animation/c3")
+    assert not again.knows("animation/c4")
+    again.clear()
+    assert not again.knows("animation/c3")
