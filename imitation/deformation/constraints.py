@@ -16,7 +16,8 @@ from imitation.geometry.projection import Array
 
 RAY_SOFTNESS = 0.999
 DEPTH_SOFTNESS = 0.01
-AXES = tuple(np.eye(3))
+Direction = tuple[float, float, float]
+AXES: tuple[Direction, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 NOWHERE = np.full(3, np.nan)
 
 
@@ -102,7 +103,7 @@ def build_rows(mesh: PreparedMesh, asked: FrameConstraints, hardness: float = 1.
             raise InputError(f"The softness of vertex {vertex} must be above 0 and at most 1, but is {soft}.")
     if not 0 < asked.depth_softness < 1:
         raise InputError(f"The softness of depths must lie between 0 and 1, but is {asked.depth_softness}.")
-    found: dict[int, list[tuple[Array, float, float]]] = {}
+    found: dict[int, list[tuple[Direction, float, float]]] = {}
     place: dict[int, Array] = {}
     for vertex, wanted in zip(asked.points, _places(mesh, asked.points), strict=True):
         _point(found, place, int(mesh.index[vertex]), vertex, wanted, asked.softness, hardness)
@@ -151,7 +152,7 @@ def _numbers(value: Any, count: int, name: str) -> Array:
 
 
 def _point(
-    found: dict[int, list[tuple[Array, float, float]]],
+    found: dict[int, list[tuple[Direction, float, float]]],
     place: dict[int, Array],
     handle: int,
     vertex: int,
@@ -178,7 +179,14 @@ def _cross(a: Array, b: Array) -> Array:
     return np.array([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
-def _ray(mesh: PreparedMesh, asked: FrameConstraints, vertex: int, pixel: Array) -> list[tuple[Array, float, float]]:
+def _triple(axis: Array) -> Direction:
+    x, y, z = axis.tolist()
+    return x, y, z
+
+
+def _ray(
+    mesh: PreparedMesh, asked: FrameConstraints, vertex: int, pixel: Array
+) -> list[tuple[Direction, float, float]]:
     camera = asked.camera
     assert camera is not None
     across = camera.rays(pixel)
@@ -188,11 +196,11 @@ def _ray(mesh: PreparedMesh, asked: FrameConstraints, vertex: int, pixel: Array)
     second = _cross(along, first)
     origin = (camera.centre - mesh.centre) / mesh.diagonal
     soft = float(asked.softness.get(vertex, RAY_SOFTNESS))
-    rows = [(first, float(first @ origin), soft), (second, float(second @ origin), soft)]
+    rows = [(_triple(axis), float(axis @ origin), soft) for axis in (first, second)]
     if vertex in asked.depths:
         depth = float(asked.depths[vertex])
         if not np.isfinite(depth) or depth <= 0:
             raise InputError(f"The depth of vertex {vertex} must be in front of the camera (above 0), but is {depth}.")
         axis = camera.R[2]
-        rows.append((axis, float(axis @ origin) + depth / mesh.diagonal, asked.depth_softness))
+        rows.append((_triple(axis), float(axis @ origin) + depth / mesh.diagonal, asked.depth_softness))
     return rows
