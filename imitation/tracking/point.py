@@ -132,7 +132,8 @@ def track_point(
     clicks : frame -> (x, y), pixels of the full picture, pixel centres at integers. The path passes through them.
     mode : "robust", or "paper": eq. 13-14 and Algorithm 1 as printed.
     mask : one (h, w) bool array a frame, the subject: all else is painted over, so that thin limbs keep apart from what
-        is behind them, and places off it are dear. Not used by the mode "paper".
+        is behind them, and places off it are dear. Not used by the mode "paper". A ``PreparedClip`` has its
+        own masks, and these are not looked at.
     absent : intervals (first, last), frames included, where the track does not exist: it ends before them and
         starts anew after them, where a click is.
     hidden : frames where something is in front of the point. A click in one of them says where the user guesses the
