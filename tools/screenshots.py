@@ -5,6 +5,7 @@ The sample is solved once and kept in build/, so that a second run is quick.
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import tempfile
@@ -19,7 +20,7 @@ sys.path.insert(0, str(ROOT))
 
 import numpy as np  # noqa: E402
 
-from app.actions.sample import fill_with_sample  # noqa: E402
+from app.actions.sample import fill_with_sample, sample_folder  # noqa: E402
 from app.actions.session import Session  # noqa: E402
 from app.model.edits import scene  # noqa: E402
 from app.window.application import make_application  # noqa: E402
@@ -79,6 +80,7 @@ def main() -> None:
         shell.show()
         camera = Camera(shell, application)
         camera.take("welcome")
+        _begun(shell, camera)
         place = solved_sample(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "build" / "Sample.motionwright")
         shell.open_session(Session.open(place))
         camera.live(20, lambda: not shell.video.canvas.picture.isNull())
@@ -88,6 +90,22 @@ def main() -> None:
             shell.project.cancel_work()
             shell.project.session.history.mark_saved()
         shell.close()
+
+
+def _begun(shell: Shell, camera: Camera) -> None:
+    """A clip that was just opened, while the first lasso is drawn."""
+    values = json.loads((sample_folder() / "sample.json").read_text())
+    shell.files.add_clip(sample_folder() / values["clip"])
+    camera.live(20, lambda: not shell.video.canvas.picture.isNull())
+    shell.do("tool_lasso")
+    outline = values["lassos"]["0"]
+    shell.video.shown.drawing = tuple((x, y) for x, y in outline[: round(0.8 * len(outline))])
+    shell.video.refresh()
+    camera.take("video-lasso")
+    shell.video.shown.drawing = ()
+    shell.do("tool_select")
+    if shell.project is not None:
+        shell.project.session.history.mark_saved()
 
 
 def _quiet(shell: Shell) -> bool:
@@ -154,6 +172,27 @@ def _ground(shell: Shell, camera: Camera) -> None:
     shell.do("tool_select")
 
 
+def _pairing(shell: Shell, camera: Camera) -> None:
+    """A point is chosen and waits for its place on the character."""
+    project = shell.project
+    assert project is not None
+    frame, tracks = project.frame, shell.character.tracks
+    project.show_frame(0)
+    camera.live(5, lambda: shell.character.frame == 0)
+    tracks.pair_button.setChecked(True)
+    tracks.names_button.setChecked(True)
+    nose = next((track.id for track in project.document.tracks if track.name == "nose"), "")
+    project.select_track(nose)
+    project.select_vertex(project.document.character(project.character_id).pairs.get(nose, -1))
+    tracks.pairing.emit(True)
+    camera.take("character-pairing")
+    tracks.names_button.setChecked(False)
+    tracks.pair_button.setChecked(False)
+    project.select_track("")
+    project.show_frame(frame)
+    camera.live(5, lambda: shell.character.frame == frame)
+
+
 def _character(shell: Shell, camera: Camera) -> None:
     project = shell.project
     assert project is not None
@@ -161,6 +200,7 @@ def _character(shell: Shell, camera: Camera) -> None:
     camera.live(30, lambda: shell.character.mesh.viewport is not None)
     camera.live(2)
     camera.take("character-orbit")
+    _pairing(shell, camera)
     shell.do("look_camera")
     character = project.document.character(project.character_id)
     names = {project.document.track(track).name: vertex for track, vertex in character.pairs.items()}
@@ -170,6 +210,9 @@ def _character(shell: Shell, camera: Camera) -> None:
     shell.do("look_side")
     camera.take("character-side")
     shell.do("look_orbit")
+    world, viewport = project.result(project.session.stages.world), shell.character.mesh.viewport
+    if world is not None and viewport is not None:
+        viewport.orbit_from(world.cameras[shell.character.frame])
     shown = shell.character.motion.vertices(shell.character.frame)
     if shown is not None and shell.character.posing is not None:
         x, y, z = (float(value) for value in shown[vertex])
