@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QComboBox, QFileDialog, QLineEdit
+from PySide6.QtWidgets import QApplication, QComboBox, QDialogButtonBox, QFileDialog, QLineEdit
 
 from app.formats import open_video, write_video
 from app.window.canvas.hits import GRAB
@@ -66,20 +67,30 @@ class Hands:
     def answer(self, path: Path, ask: Callable[[], object]) -> None:
         """Do what opens a file dialog, and type a path into it."""
         answered: list[str] = []
+        end = time.monotonic() + 30
 
         def type_() -> None:
             dialog = QApplication.activeModalWidget()
-            if not isinstance(dialog, QFileDialog):
-                QTimer.singleShot(50, type_)
-                return
-            field = dialog.findChild(QLineEdit, "fileNameEdit")
-            answered.append(dialog.windowTitle())
-            field.selectAll()
-            QTest.keyClicks(field, str(path))
-            QTest.keyClick(field, Qt.Key.Key_Return)
+            if isinstance(dialog, QFileDialog):
+                field = dialog.findChild(QLineEdit, "fileNameEdit")
+                field.selectAll()
+                QTest.keyClicks(field, str(path))
+                QTest.keyClick(field, Qt.Key.Key_Return)
+                answered.append(dialog.windowTitle())
+                if dialog.isVisible():  # the list of known names took the key: the button is left
+                    accept = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Save)
+                    QTest.mouseClick(accept, LEFT)
+            if dialog is not None and dialog.isVisible() and time.monotonic() > end:
+                dialog.close()
+            elif dialog is None or dialog.isVisible():
+                waiting.start(50)
 
-        QTimer.singleShot(50, type_)
+        waiting = QTimer()
+        waiting.setSingleShot(True)
+        waiting.timeout.connect(type_)
+        waiting.start(50)
         ask()
+        waiting.stop()
         assert answered, "no dialog asked"
         self.shell.activateWindow()  # without a screen nobody gives it back the keys
         wait_for(self.shell.isActiveWindow)
