@@ -178,8 +178,10 @@ class Project(QObject):
         return self.session.runner.state(stage)
 
     def motion_state(self, character_id: str) -> str:
-        """How a character's motion stands."""
-        return self.state(self.session.stages.animation(character_id))
+        """How a character's motion stands; what was moved before and lacks only its edits is stale."""
+        stages = self.session.stages
+        state = self.state(stages.animation(character_id))
+        return "stale" if state == "missing" and stages.base(character_id) in self.session.cache else state
 
     def start(self, label: str, *stages: Stage) -> Job:
         """Compute stages in the background."""
