@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import threading
 import uuid
@@ -11,6 +12,7 @@ from pathlib import Path
 
 from app.actions.places import unsaved_folder
 from app.formats import FrameSource
+from app.formats.atomic import explained
 from app.model.document import Document
 from app.model.edits import Edit
 from app.model.history import History, Version
@@ -150,14 +152,17 @@ class Session:
 
     def save_as(self, path: Path, *, with_media: bool = False) -> None:
         """Write the project to another folder and go on there; linked media are copied along when asked for."""
-        document = self.document
-        if with_media:
-            document = _with_copied_media(document, self.folder, target := _new_folder(path))
-        else:
-            target = _new_folder(path)
-        if self.folder.media.is_dir():
-            shutil.copytree(self.folder.media, target.media, dirs_exist_ok=True)
-        target.save(document)
+        target = _new_folder(path)
+        held = target.media.is_dir()
+        try:
+            with explained(target.path):
+                document = _with_copied_media(self.document, self.folder, target) if with_media else self.document
+                if self.folder.media.is_dir():
+                    shutil.copytree(self.folder.media, target.media, dirs_exist_ok=True)
+            target.save(document)
+        except BaseException:
+            _take_back(target, media=not held)
+            raise
         former, was_titled = self.folder, self.titled
         self._end()
         if not was_titled and former.results.is_dir():
@@ -171,11 +176,17 @@ class Session:
         self.history.mark_saved()
 
     def autosave(self) -> bool:
-        """Write unsaved work beside the saved project; False when there is none."""
+        """Write unsaved work beside the saved project; False when there is none, and none is left to recover then."""
         if not self.history.modified:
+            self.forget_autosave()
             return False
         self.folder.autosave(self.document)
         return True
+
+    def forget_autosave(self) -> None:
+        """Leave nothing to recover: there is no unsaved work, or the person chose to throw it away."""
+        with explained(self.folder.path):
+            self.folder.autosave_file.unlink(missing_ok=True)
 
     def close(self) -> None:
         """Stop all work and close all files; what was not saved stays recoverable only if it was autosaved."""
@@ -202,6 +213,15 @@ class Session:
 
 def _new_folder(path: Path) -> ProjectFolder:
     return ProjectFolder.create(path, Document())
+
+
+def _take_back(folder: ProjectFolder, *, media: bool) -> None:
+    """Remove a project that could not be written whole; what was in its folder before stays."""
+    folder.file.unlink(missing_ok=True)
+    if media:
+        shutil.rmtree(folder.media, ignore_errors=True)
+    with contextlib.suppress(OSError):
+        folder.path.rmdir()
 
 
 def _with_copied_media(document: Document, source: ProjectFolder, target: ProjectFolder) -> Document:

@@ -5,6 +5,7 @@ What is selected and which frame is shown are no part of the document and are ne
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -216,7 +217,9 @@ class Project(QObject):
         self.work_changed.emit()
 
     def close(self) -> None:
-        """Stop all work and close the session."""
+        """Stop all work and close the session; whoever asked has saved, or chosen to throw away, what was unsaved."""
         self._forget()
         self.progress.clear()
+        with contextlib.suppress(InputError):
+            self.session.forget_autosave()
         self.session.close()

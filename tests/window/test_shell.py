@@ -125,6 +125,23 @@ def test_unsaved_changes_are_asked_about(empty: Shell, noise_clip: Path, monkeyp
     monkeypatch.setattr("app.window.files.ask_unsaved", lambda *_: "discard")
 
 
+def test_discarded_work_does_not_come_back(
+    open_shell: Callable[[Session], Shell], noise_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Work that was autosaved and then not wanted is not recovered at the next start."""
+    shell = open_shell(Session.new(tmp_path / "film"))
+    drop(shell, noise_clip)
+    shell.files.autosave()
+    assert shell.project is not None
+    assert shell.project.session.folder.recoverable() is not None
+    monkeypatch.setattr("app.window.files.ask_unsaved", lambda *_: "discard")
+    shell.close()
+    again = Session.open(tmp_path / "film", recover=True)
+    assert again.document.clip is None
+    assert again.history.undo_label is None
+    again.close()
+
+
 def test_work_is_seen_and_can_be_cancelled(shell: Shell) -> None:
     """A new point starts work: the chip shows it; its cancel button stops it within a moment."""
     shell.do("tool_point")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import shutil
 from contextlib import closing
 from pathlib import Path
@@ -55,6 +56,37 @@ def test_save_as_onto_a_project_is_refused(tmp_path: Path) -> None:
         with pytest.raises(InputError, match="project already"):
             session.save_as(tmp_path / "two")
         assert session.folder.path.name == "one.motionwright"
+
+
+def test_save_as_that_fails_leaves_no_project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk is said in one sentence; the place stays free, and the session goes on where it was."""
+    with closing(Session.new(tmp_path / "one")) as session:
+        with_clip(session)
+        session.folder.media.mkdir()
+        (session.folder.media / "clip.mp4").write_bytes(b"clip")
+
+        def full(*_: object, **__: object) -> None:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        with monkeypatch.context() as patched:
+            patched.setattr("app.actions.session.shutil.copytree", full)
+            with pytest.raises(InputError, match="disk is full"):
+                session.save_as(tmp_path / "two")
+        assert not (tmp_path / "two.motionwright").exists()
+        assert session.folder.path.name == "one.motionwright"
+        assert session.history.modified
+        session.save_as(tmp_path / "two")
+        assert (session.folder.media / "clip.mp4").read_bytes() == b"clip"
+
+
+def test_what_was_undone_is_not_recovered(tmp_path: Path) -> None:
+    """An autosave whose work was taken back is dropped at the next autosave."""
+    with closing(Session.new(tmp_path / "film")) as session:
+        session.apply(scene.rename(session.document, "undone"))
+        assert session.autosave()
+        session.undo()
+        assert not session.autosave()
+        assert session.folder.recoverable() is None
 
 
 def test_unsaved_work_is_recovered(tmp_path: Path) -> None:
