@@ -1,0 +1,1 @@
+"""The Motion graph workspace: sequences, their motion graph, and the performance composed of it."""
