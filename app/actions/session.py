@@ -24,6 +24,7 @@ from app.stages.project import Stages
 from app.stages.runner import Runner
 from app.stages.stage import Stage
 from app.storage.folder import SUFFIX, ProjectFolder
+from app.storage.lock import FolderLock
 from app.storage.results import ResultStore
 from imitation.errors import InputError
 
@@ -40,6 +41,7 @@ class Session:
     history : the versions of the document.
     folder : where the project lies; a private place until it is saved for the first time.
     titled : whether the user has chosen a place.
+    alone : False where another running program has the project open.
     """
 
     def __init__(
@@ -70,7 +72,7 @@ class Session:
         saved = folder.load() if folder.file.is_file() else Document()
         session = cls(saved, folder, titled=True, executor=executor)
         if recover and (document := folder.recoverable()) is not None:
-            session.history.apply(document, "Recover unsaved work")
+            session.recover(document)
         return session
 
     @property
@@ -183,6 +185,12 @@ class Session:
         self.folder.autosave(self.document)
         return True
 
+    def recover(self, document: Document) -> None:
+        """Take up a document that was autosaved, as one entry of the history."""
+        before = self.document
+        self.history.apply(document, "Recover unsaved work")
+        self._tell(before)
+
     def forget_autosave(self) -> None:
         """Leave nothing to recover: there is no unsaved work, or the person chose to throw it away."""
         with explained(self.folder.path):
@@ -195,6 +203,8 @@ class Session:
             shutil.rmtree(self.folder.path, ignore_errors=True)
 
     def _begin(self) -> None:
+        self._lock = FolderLock(self.folder.path)
+        self.alone = self._lock.take()
         self.media = Media(self.folder.locate)
         store = ResultStore(self.folder.results)
         store.sweep()
@@ -204,6 +214,7 @@ class Session:
     def _end(self) -> None:
         self.runner.close()
         self.media.close()
+        self._lock.let_go()
 
     def _tell(self, before: Document) -> None:
         if before is not self.document:

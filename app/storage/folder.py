@@ -69,7 +69,7 @@ class ProjectFolder:
 
     def load(self) -> Document:
         """Read the saved document."""
-        return self._read(self.file)
+        return self.read(self.file)
 
     def save(self, document: Document) -> None:
         """Write the document and drop the autosave, which it supersedes."""
@@ -87,7 +87,7 @@ class ProjectFolder:
         if self.file.is_file() and self.autosave_file.stat().st_mtime_ns < self.file.stat().st_mtime_ns:
             return None  # a save was cut off after the project was written, before the autosave was removed
         try:
-            recovered = self._read(self.autosave_file)
+            recovered = self.read(self.autosave_file)
         except InputError:
             return None
         if self.file.is_file() and document_to_json(recovered) == self.file.read_bytes():
@@ -140,7 +140,8 @@ class ProjectFolder:
                 return candidate
         raise InputError(f"{stated.name} is missing: it was expected at {candidates[0]}; say where it lies now.")
 
-    def _read(self, file: Path) -> Document:
+    def read(self, file: Path) -> Document:
+        """Read a document of this project, the saved one or another."""
         try:
             data = file.read_bytes()
         except OSError as error:
