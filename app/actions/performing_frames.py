@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import attrs
+import numpy as np
 
 from app.actions.session import Session
 from app.formats.tvm import FrameMesh
@@ -55,18 +56,21 @@ class PerformanceFrames(Sequence[FrameMesh]):
         return position in self._shapes
 
 
-def performance_frames(session: Session, *, blended: bool = True) -> PerformanceFrames:
-    """Give the frames of the composed performance; without blends on request, to compare.
+def performance_frames(session: Session, *, blended: bool = True, aligned: bool = True) -> PerformanceFrames:
+    """Give the frames of the composed performance; to compare, without blends or with every clip as filmed.
 
     Raises ``InputError`` when it has not been composed.
     """
     placed = session.ready(session.stages.performance)
     if not isinstance(placed, Assembled):
         raise InputError("The performance has not been composed yet: run perform compose first.")
-    made = session.ready(session.stages.blends) if blended else None
+    performance = placed.performance
+    if not aligned:
+        performance = attrs.evolve(performance, transforms=np.zeros_like(performance.transforms))
+    made = session.ready(session.stages.blends) if blended and aligned else None
     blends = made.blends if isinstance(made, Blended) else ()
     footages = [sequence_footage(session, sequence.id) for sequence in session.document.sequences]
-    return PerformanceFrames(footages, placed.performance, blends, session.document.sequences[0].fps)
+    return PerformanceFrames(footages, performance, blends, session.document.sequences[0].fps)
 
 
 def sequence_footage(session: Session, sequence_id: str) -> Footage:
@@ -78,8 +82,6 @@ def sequence_footage(session: Session, sequence_id: str) -> Footage:
 
 
 def _one_mesh(footages: Sequence[Footage], used: set[int]) -> bool:
-    import numpy as np
-
     first, *others = (footages[number][0] for number in sorted(used))
     return all(
         other.vertices.shape == first.vertices.shape and np.array_equal(other.faces, first.faces) for other in others

@@ -194,6 +194,14 @@ class Scene:
         self._actors[name] = actor
         actor.SetVisibility(self._shown.get(name, True))
 
+    def put(self, name: str, actor: Any) -> None:
+        """Add an actor made elsewhere under a name; one of that name is taken out."""
+        self._put(name, actor)
+
+    def take_out(self, name: str) -> None:
+        """Take an actor out by its name."""
+        self._remove(name)
+
     def _remove(self, name: str) -> None:
         actor = self._actors.pop(name, None)
         if actor is not None:
