@@ -16,6 +16,7 @@ DONE, USAGE, BAD_INPUT, NO_SOLUTION, BUG, STOPPED = 0, 2, 3, 4, 5, 130
 VERBS = {
     "demo": "app.commands.demo:demo",
     "gui": "app.commands.gui:gui",
+    "install-desktop": "app.commands.desktop:install_desktop",
     "new": "app.commands.project:new",
     "set": "app.commands.project:set_",
     "info": "app.commands.project:info",
