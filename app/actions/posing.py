@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -56,9 +56,9 @@ class PoseDrag:
         self._base = base
         self._before: Array = np.array(before)
         edit = character.edits.get(frame)
-        self._moves: dict[int, Array] = (
-            {vertex: np.array(move.place) for vertex, move in edit.moves.items() if not move.muted} if edit else {}
-        )
+        counting = {vertex: move for vertex, move in edit.moves.items() if not move.muted} if edit else {}
+        self._moves: dict[int, Array] = {vertex: np.array(move.place) for vertex, move in counting.items()}
+        self._on_rays = {vertex for vertex, move in counting.items() if move.on_ray}
         self._deformer = session.media.deformer(base.rest, base.faces, character.solve.keep_volume)
         self._pose: object = self._before
 
@@ -72,13 +72,22 @@ class PoseDrag:
         """Control vertices of this frame and where they are now."""
         return self._moves
 
-    def move(self, places: Mapping[int, Place]) -> Array:
-        """Put vertices somewhere and give the mesh (v, 3) that follows, nearly relaxed."""
+    @property
+    def on_rays(self) -> frozenset[int]:
+        """Those of which only the image point is chosen."""
+        return frozenset(self._on_rays)
+
+    def move(self, places: Mapping[int, Place], on_rays: Collection[int] = ()) -> Array:
+        """Put vertices somewhere and give the mesh (v, 3) that follows, nearly relaxed.
+
+        Of the vertices ``on_rays`` only the image point of their place counts: they slide along its ray.
+        """
         from imitation.propagation import edit_constraints
 
         for vertex, place in places.items():
             self._moves[int(vertex)] = np.array(tuple(place), np.float64)
-        asked = edit_constraints(self._base, self.frame, self._moves, self._before)
+        self._on_rays = (self._on_rays - places.keys()) | (set(on_rays) & places.keys())
+        asked = edit_constraints(self._base, self.frame, self._moves, self._before, on_rays=self._on_rays)
         pose = self._deformer.solve_pose(asked, start=self._pose, iterations=STEPS)
         self._pose = pose
         vertices: Array = pose.vertices
@@ -93,6 +102,7 @@ class PoseDrag:
             self.frame,
             self._moves,
             pose=self._before,
+            on_rays=self._on_rays,
             deformer=self._deformer,
         )
         return {vertex: (float(x), float(y), float(z)) for vertex, (x, y, z) in places.items()}
@@ -100,8 +110,20 @@ class PoseDrag:
 
 def release(session: Session, drag: PoseDrag, moved: Iterable[int]) -> Edit:
     """Make the edit that a finished drag of these vertices is; apply it with ``session.apply``."""
-    moves = {vertex: drag.moves[vertex] for vertex in moved}
-    return poses.move_vertices(session.document, drag.character_id, drag.frame, moves, drag.committed())
+    committed = drag.committed()
+    moves = placed_moves(drag, moved, committed)
+    return poses.move_vertices(session.document, drag.character_id, drag.frame, moves, committed, drag.on_rays)
+
+
+def placed_moves(
+    drag: PoseDrag, moved: Iterable[int], committed: Mapping[int, tuple[float, float, float]]
+) -> dict[int, tuple[float, float, float]]:
+    """Where a finished drag has put these vertices: where the hand left them, or on its ray where the mesh took it."""
+    places = {}
+    for vertex in moved:
+        x, y, z = committed[vertex] if vertex in drag.on_rays else (float(value) for value in drag.moves[vertex])
+        places[vertex] = (x, y, z)
+    return places
 
 
 def move_vertex(session: Session, character_id: str, frame: int, vertex: int, place: Place) -> None:
@@ -113,6 +135,26 @@ def move_vertex(session: Session, character_id: str, frame: int, vertex: int, pl
         raise InputError(f"There is no vertex {vertex}: the mesh has {len(drag.before)}.")
     drag.move({vertex: place})
     session.apply(release(session, drag, [vertex]))
+
+
+def edited_frame(session: Session, character_id: str, frame: int) -> Array | None:
+    """The pose (v, 3) that an edited frame was committed in, spread or not; None for frames without an edit.
+
+    It may be called in any thread, and solves one frame at most.
+    """
+    from app.stages.animation import counting_edits
+    from imitation.propagation import edited_pose
+
+    character = session.document.character(character_id)
+    placed = next((places for at, places, _ in counting_edits(character) if at == frame), None)
+    ground: Any = session.ready(_ground_of(session.stages, character_id, frame))
+    if ground is None:
+        return None
+    if placed is None or not frame:
+        vertices: Array = ground.vertices[frame]
+        return vertices
+    deformer = session.media.deformer(ground.rest, ground.faces, character.solve.keep_volume)
+    return edited_pose(ground, frame, {vertex: np.array(place) for vertex, place in placed}, deformer=deformer)
 
 
 def delete_move(session: Session, character_id: str, frame: int, vertex: int) -> None:
@@ -147,7 +189,9 @@ def committed_anew(session: Session, edit: Edit) -> Edit:
             stages = Stages(document) if frame else before
             ground: Any = session.result(_ground_of(stages, character.id, frame))
             deformer = session.media.deformer(ground.rest, ground.faces, character.solve.keep_volume)
-            places = commit_edit(ground, frame, moves, pose=None if frame else ground.rest, deformer=deformer)
+            loose = [vertex for vertex in moves if pose.moves[vertex].on_ray]
+            before_any = None if frame else ground.rest
+            places = commit_edit(ground, frame, moves, pose=before_any, on_rays=loose, deformer=deformer)
             fresh = {vertex: (float(x), float(y), float(z)) for vertex, (x, y, z) in places.items()}
             document = poses.recommit(document, character.id, frame, fresh).document
     return Edit(document, edit.label, edit.frame)

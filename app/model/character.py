@@ -36,10 +36,18 @@ class Alignment:
 
 @attrs.frozen
 class Move:
-    """Where the user put one vertex in one frame; a muted move is kept but has no effect."""
+    """Where the user put one vertex in one frame.
+
+    Attributes
+    ----------
+    place : world.
+    muted : it is kept but has no effect.
+    on_ray : only its image point was chosen: along the ray the vertex went where the mesh took it.
+    """
 
     place: Point3
     muted: bool = False
+    on_ray: bool = False
 
 
 @attrs.frozen

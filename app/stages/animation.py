@@ -64,7 +64,7 @@ def base(document: Document, character: Character) -> Stage:
 @once
 def animation(document: Document, character: Character) -> Stage:
     """The character's motion with all edits."""
-    edits = _edits(character)
+    edits = counting_edits(character)
     following = tuple((vertex, track) for vertex, track in character.following.items())
     inputs = (
         character.id,
@@ -89,12 +89,12 @@ def ambiguous(document: Document, character: Character) -> Stage:
 def comparison(document: Document, character: Character, variant: str) -> Stage:
     """One of the paper's comparisons, from the same edits."""
     needs = (base(document, character),)
-    inputs = (variant, _edits(character), character.solve.keep_volume)
+    inputs = (variant, counting_edits(character), character.solve.keep_volume)
     name, label = f"compare/{character.id}/{variant}", f"Comparing {character.name} with {variant.replace('_', ' ')}"
     return Stage(name, label, _comparison, inputs, needs, weight=2.0)
 
 
-def _edits(character: Character) -> tuple[Any, ...]:
+def counting_edits(character: Character) -> tuple[Any, ...]:
     """Give (frame, committed places, end of the correction) of the edits that count, in the order of their frames."""
     paired = set(character.pairs.values())
     return tuple(

@@ -30,6 +30,7 @@ def commit_edit(
     *,
     pose: Array | None = None,
     pinned: Collection[int] = (),
+    on_rays: Collection[int] = (),
     deformer: Deformer | None = None,
 ) -> dict[int, Array]:
     """Deform one frame after its control vertices were moved, and say where that leaves everything.
@@ -44,6 +45,8 @@ def commit_edit(
     moves : vertex -> place (3,), world: all control vertices of this frame, earlier ones too.
     pose : (v, 3) the frame as the user sees it; default the base solution's.
     pinned : key points or control vertices that must stay where they are in ``pose``.
+    on_rays : moved vertices of which only the image point is asked for: they keep to the ray through their place, and
+        their depth gives way.
     deformer : a prepared `Deformer` of this mesh.
 
     Returns
@@ -51,7 +54,7 @@ def commit_edit(
     vertex -> place (3,) of every key point and of every moved or pinned vertex: the edit's committed positions.
     """
     check_places(base, {frame: moves})
-    return _solve_edit(base, frame, moves, pose, pinned, deformer)[0]
+    return _solve_edit(base, frame, moves, pose, pinned, on_rays, deformer)[0]
 
 
 def edited_pose(base: Base, frame: int, committed: Committed, *, deformer: Deformer | None = None) -> Array:
@@ -109,6 +112,7 @@ def edit_constraints(
     moves: Mapping[int, ArrayLike],
     pose: Array,
     pinned: Collection[int] = (),
+    on_rays: Collection[int] = (),
 ) -> FrameConstraints:
     """What an edited frame asks of the mesh while its control vertices are being moved.
 
@@ -118,12 +122,16 @@ def edit_constraints(
     from imitation.deformation import FrameConstraints
 
     camera = base.cameras[frame]
-    points = {int(vertex): np.asarray(place, np.float64) for vertex, place in moves.items()}
+    points = {int(vertex): np.asarray(place, np.float64) for vertex, place in moves.items() if vertex not in on_rays}
     for vertex in pinned:
         points.setdefault(int(vertex), pose[vertex])
     rays, depths, softness = {}, {}, {}
+    for vertex in moves.keys() & set(on_rays):
+        pixel = camera.project(np.asarray(moves[vertex], np.float64))
+        rays[int(vertex)] = (float(pixel[0]), float(pixel[1]))
+        depths[int(vertex)] = float(camera.depth(pose[vertex]))
     for key, vertex in enumerate(base.keys.vertices.tolist()):
-        if vertex in points:
+        if vertex in points or vertex in rays:
             continue
         if base.keys.planted[frame, key]:
             points[vertex] = pose[vertex]
@@ -141,16 +149,20 @@ def _solve_edit(
     moves: Mapping[int, ArrayLike],
     pose: Array | None,
     pinned: Collection[int],
+    on_rays: Collection[int],
     deformer: Deformer | None,
 ) -> tuple[dict[int, Array], Array]:
     deformer = deformer or make_deformer(base.rest, base.faces)
     current = base.vertices[frame] if pose is None else np.asarray(pose, np.float64)
     if current.shape != base.rest.shape:
         raise InputError(f"The pose to edit needs shape {base.rest.shape}, but has {current.shape}.")
-    asked = edit_constraints(base, frame, moves, current, pinned)
+    asked = edit_constraints(base, frame, moves, current, pinned, on_rays)
     keys = set(base.keys.vertices.tolist())
-    modes = typical_modes(base, deformer, sorted(set(asked.points) - keys))
+    loose = sorted(set(on_rays) & moves.keys())
+    modes = typical_modes(base, deformer, sorted(set(asked.points).union(loose) - keys))
     posed = deformer.solve_pose(asked, start=current, modes=modes).vertices
     committed = {vertex: posed[vertex].copy() for vertex in base.keys.vertices.tolist()}
     committed.update({vertex: np.array(place, np.float64) for vertex, place in asked.points.items()})
+    camera = base.cameras[frame]
+    committed.update({vertex: camera.lift(asked.rays[vertex], float(camera.depth(posed[vertex]))) for vertex in loose})
     return committed, posed

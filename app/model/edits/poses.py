@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 import attrs
 
@@ -15,16 +15,24 @@ from app.model.values import ModelError
 Places = Mapping[int, Iterable[float]]
 
 
-def move_vertices(document: Document, character_id: str, frame: int, moves: Places, committed: Places) -> Edit:
+def move_vertices(
+    document: Document,
+    character_id: str,
+    frame: int,
+    moves: Places,
+    committed: Places,
+    on_rays: Collection[int] = (),
+) -> Edit:
     """Put vertices somewhere in one frame and commit the frame's pose.
 
     ``moves`` are the vertices the user moved now; those moved in this frame before stay. ``committed`` holds the
-    place of every key point and control vertex of the frame as the user saw it on release.
+    place of every key point and control vertex of the frame as the user saw it on release; of the vertices
+    ``on_rays`` the user chose the image point only.
     """
     character, frame = document.character(character_id), checked_frame(document, frame)
     if not moves:
         raise ModelError("No vertex was moved: drag one, or name a vertex and its place.")
-    placed = {int(vertex): Move(checked_place(place)) for vertex, place in moves.items()}
+    placed = {int(vertex): Move(checked_place(place), on_ray=vertex in on_rays) for vertex, place in moves.items()}
     if min(placed) < 0:
         raise ModelError(f"A vertex is a number from 0 on, not {min(placed)}.")
     former = character.edits.get(frame)
