@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import shutil
 import threading
 import uuid
@@ -124,6 +125,15 @@ class Session:
         if self.document.clip is None:
             raise InputError("This project has no clip yet: add a video first.")
         return self.media.frames(self.document.clip)
+
+    def as_it_is(self) -> Session:
+        """A session on the document of this moment, with the same results and workers: later edits do not reach it.
+
+        For what goes on in another thread, such as a film being written.
+        """
+        still = copy.copy(self)
+        still.history, still._listeners, still._stages = History(self.document), [], None
+        return still
 
     def start(self, label: str, targets: tuple[Stage, ...], listener: Listener | None = None) -> Job:
         """Compute what is missing for these stages in the background."""

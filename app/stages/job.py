@@ -44,13 +44,14 @@ class Silent:
 
 
 class Job:
-    """A request for the results of some stages."""
+    """A request for the results of some stages, or for one call, which leaves its answer in ``value``."""
 
     def __init__(self, label: str, targets: tuple[Stage, ...], listener: Listener) -> None:
         self.label, self.targets, self.listener = label, targets, listener
         self.token = Token()
         self.state: JobState = "running"
         self.error: BaseException | None = None
+        self.value: Any = None
         self.fraction = 0.0
         self._ended = threading.Event()
         self._done: dict[str, float] = {}
@@ -77,6 +78,12 @@ class Job:
             total = sum(self._weights.values()) or 1.0
             self.fraction = sum(self._weights[key] * done for key, done in self._done.items()) / total
         self.listener.progressed(self, self.fraction, stage.label)
+
+    def tell(self, fraction: float) -> None:
+        """Take the progress of a job that is one call; raises ``Cancelled`` when it was cancelled."""
+        self.token.check()
+        self.fraction = fraction
+        self.listener.progressed(self, fraction, self.label)
 
     def skip(self, stage: Stage) -> None:
         """Count a stage as done whose result is there already, or that nothing needs."""

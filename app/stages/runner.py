@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import threading
+from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import Any, Literal
@@ -17,6 +18,7 @@ from app.stages.job import Job, JobState, Listener, Silent
 from app.stages.media import Media
 from app.stages.stage import Stage
 from imitation.errors import Cancelled, InputError
+from imitation.progress import Progress
 
 StageState = Literal["fresh", "stale", "running", "failed", "blocked", "missing"]
 
@@ -57,6 +59,10 @@ class Runner:
             known = stage.name in self._latest or self.cache.knows(stage)
             return "stale" if known else "missing"
 
+    def failure(self, stage: Stage) -> BaseException | None:
+        """Give what this stage raised, None when it has not failed."""
+        return self._failed.get(stage.key)
+
     def why_failed(self, stage: Stage) -> str | None:
         """Give the sentence of the failure of this stage, None when it has not failed."""
         error = self._failed.get(stage.key)
@@ -64,10 +70,23 @@ class Runner:
 
     def start(self, label: str, targets: tuple[Stage, ...], listener: Listener | None = None) -> Job:
         """Compute what is missing for these stages in the background."""
-        job = Job(label, targets, listener or Silent())
+        return self._begin(Job(label, targets, listener or Silent()), self._compute_all)
+
+    def call(self, label: str, work: Callable[[Progress], Any], listener: Listener | None = None) -> Job:
+        """Do something that leaves no result to keep, such as writing a file, as a job of its own.
+
+        ``work`` gets a progress callback that raises ``Cancelled``; what it returns becomes the job's ``value``.
+        """
+
+        def carry(job: Job) -> None:
+            job.value = work(job.tell)
+
+        return self._begin(Job(label, (), listener or Silent()), carry)
+
+    def _begin(self, job: Job, work: Callable[[Job], None]) -> Job:
         with self._lock:
             self._jobs.add(job)
-        threading.Thread(target=self._carry, args=(job,), name=f"job {label}", daemon=True).start()
+        threading.Thread(target=self._carry, args=(job, work), name=f"job {job.label}", daemon=True).start()
         return job
 
     def run(self, label: str, targets: tuple[Stage, ...], listener: Listener | None = None) -> list[Any]:
@@ -100,11 +119,11 @@ class Runner:
         if self._owned:
             self._executor.shutdown(wait=True, cancel_futures=True)
 
-    def _carry(self, job: Job) -> None:
+    def _carry(self, job: Job, work: Callable[[Job], None]) -> None:
         state: JobState = "done"
         error: BaseException | None = None
         try:
-            self._compute_all(job)
+            work(job)
         except Cancelled:
             state = "cancelled"
         except Exception as failure:  # noqa: BLE001 - whatever a stage raises belongs to the job, not to this thread

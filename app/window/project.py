@@ -19,7 +19,8 @@ from app.model.values import ModelError
 from app.stages.job import Job
 from app.stages.stage import Stage
 from app.window.work import Ears, details
-from imitation.errors import InputError
+from imitation.errors import InputError, NoSolution
+from imitation.progress import Progress
 
 
 class Project(QObject):
@@ -32,6 +33,8 @@ class Project(QObject):
     partial = Signal(object, object)
     work_changed = Signal()
     work_progressed = Signal()
+    job_ended = Signal(object)
+    closing = Signal()
     failed = Signal(str, str)
     saved_changed = Signal()
     shown_at = Signal(int, str)
@@ -191,6 +194,13 @@ class Project(QObject):
         self.work_changed.emit()
         return job
 
+    def call(self, label: str, work: Callable[[Progress], Any]) -> Job:
+        """Do something in the background, such as writing a file, as a job; see ``Runner.call``."""
+        job = self.session.runner.call(label, work, self._ears)
+        self.progress[job] = (0.0, label)
+        self.work_changed.emit()
+        return job
+
     def cancel_work(self) -> None:
         """Stop all jobs; what is finished stays."""
         for job in tuple(self.progress):
@@ -211,13 +221,15 @@ class Project(QObject):
     def _finished(self, job: Job) -> None:
         self.progress.pop(job, None)
         if job.state == "failed":
-            known = isinstance(job.error, InputError | ModelError)
+            known = isinstance(job.error, InputError | ModelError | NoSolution)
             sentence = job.sentence if known else f"{job.label} stopped by an error of the program."
             self.failed.emit(sentence, details(job.error))
+        self.job_ended.emit(job)
         self.work_changed.emit()
 
     def close(self) -> None:
         """Stop all work and close the session; whoever asked has saved, or chosen to throw away, what was unsaved."""
+        self.closing.emit()
         self._forget()
         self.progress.clear()
         with contextlib.suppress(InputError):

@@ -116,6 +116,20 @@ def test_listeners_hear_before_and_after(tmp_path: Path) -> None:
     assert heard == [("film", "a"), ("a", "film"), ("film", "a")]
 
 
+def test_a_session_as_it_is_knows_no_later_edits(tmp_path: Path) -> None:
+    """What writes a film in another thread goes on with the document it began with, and finds the same results."""
+    with closing(Session.new(tmp_path / "a")) as session:
+        session.apply(scene.rename(session.document, "before"))
+        still, heard = session.as_it_is(), []
+        session.subscribe(lambda before, after: heard.append(after))
+        session.apply(scene.rename(session.document, "after"))
+        assert (still.document.name, session.document.name) == ("before", "after")
+        assert len(heard) == 1
+        assert still.cache is session.cache
+        assert still.history.undo_label is None
+        assert still.stages.cameras.key == session.stages.cameras.key
+
+
 def test_stages_are_made_once_a_version(tmp_path: Path) -> None:
     """The stages of one version are the same objects; an edit makes new ones with other keys where it reaches."""
     with closing(Session.new(tmp_path / "film")) as session:

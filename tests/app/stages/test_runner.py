@@ -238,3 +238,41 @@ def test_memory_stays_in_its_budget(tmp_path: Path) -> None:
         cache.put(stage, np.full(1000, float(i)))
     assert cache._bytes <= 20_000
     assert [cache.get(stage)[0] for stage in stages] == list(range(10))
+
+
+def test_a_call_is_a_job_with_progress_answer_and_cancel(runner: Runner) -> None:
+    """What it returns is kept, its progress is told; cancelled it ends there; an error is the job's."""
+    heard: list[float] = []
+
+    class Ear(Silent):
+        def progressed(self, job: Job, fraction: float, label: str) -> None:
+            heard.append(fraction)
+
+    def work(progress: Any) -> str:
+        progress(0.5)
+        return "written"
+
+    done = runner.call("Writing", work, Ear())
+    assert done.wait(5)
+    assert (done.state, done.value, heard) == ("done", "written", [0.5])
+
+    def endless(progress: Any) -> None:
+        while True:
+            progress(0.1)
+            time.sleep(0.005)
+
+    stopped = runner.call("Writing", endless)
+    assert stopped in runner.jobs
+    stopped.cancel()
+    assert stopped.wait(5)
+    assert stopped.state == "cancelled"
+
+    def refuse(progress: Any) -> None:
+        raise InputError("The disk is full.")
+
+    failed = runner.call("Writing", refuse)
+    assert failed.wait(5)
+    assert (failed.state, failed.sentence) == ("failed", "The disk is full.")
+    left = runner.call("Writing", endless)
+    runner.close()
+    assert left.state == "cancelled", "closing ends calls too"

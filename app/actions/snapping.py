@@ -1,0 +1,75 @@
+"""Putting a point onto the measured background: where its ray meets the surface, and how sure that is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import attrs
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from imitation.errors import NoSolution
+
+if TYPE_CHECKING:
+    from imitation.depth import DepthMap
+
+Array = NDArray[np.float64]
+REACH = 0.03
+"""Radius of the disc that shows how the surface lies, as a share of its distance."""
+ASIDE = 6.0
+CORNERS = 40
+
+
+@attrs.frozen(eq=False)
+class Snap:
+    """A point on the surface.
+
+    Attributes
+    ----------
+    place : (3,) world. depth : camera z, world units. residual : rms distance of the surface nearby from a plane,
+        along the rays, world units.
+    disc : (k, 2) picture pixels of a round that lies on the surface there, to be drawn.
+    """
+
+    place: Array
+    depth: float
+    residual: float
+    disc: Array
+
+
+def snap(surface: DepthMap, pixel: ArrayLike) -> Snap:
+    """Put what is seen at a pixel (2,) of the frame of ``surface`` onto it.
+
+    Raises ``NoSolution`` outside the picture, and where no depth is known round the pixel.
+    """
+    spot = np.asarray(pixel, np.float64)
+    height, width = surface.depth.shape
+    if not (-0.5 <= spot[0] <= width - 0.5 and -0.5 <= spot[1] <= height - 0.5):
+        raise NoSolution("Outside the picture no background was measured.")
+    place, residual = surface.place(spot)
+    camera = surface.camera
+    depth = float(camera.depth(place))
+    normal = _normal(surface, spot, place)
+    across = np.cross(normal, camera.R[0])
+    across /= max(float(np.linalg.norm(across)), 1e-9)
+    along = np.cross(across, normal)
+    turn = np.linspace(0, 2 * np.pi, CORNERS)[:, None]
+    disc = camera.project(place + REACH * depth * (np.cos(turn) * along + np.sin(turn) * across))
+    return Snap(place, depth, residual, disc)
+
+
+def _normal(surface: DepthMap, spot: Array, place: Array) -> Array:
+    """Unit normal of the surface round a pixel; towards the camera where the surface ends there."""
+    camera = surface.camera
+    facing: Array = camera.centre - place
+    facing = facing / np.linalg.norm(facing)
+    try:
+        sides = [surface.place(spot + step)[0] for step in ((ASIDE, 0), (-ASIDE, 0), (0, ASIDE), (0, -ASIDE))]
+    except NoSolution:
+        return facing
+    normal: Array = np.cross(sides[0] - sides[1], sides[2] - sides[3])
+    length = float(np.linalg.norm(normal))
+    if length < 1e-12:
+        return facing
+    normal = normal / length
+    return normal if normal @ facing > 0 else -normal
