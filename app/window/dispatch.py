@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtGui import QAction, QKeySequence
@@ -32,7 +33,7 @@ class Dispatch:
         shell = self.shell
         if name == "cancel" and shell.timeline.lanes.cancel():
             return
-        if shell.stack.currentWidget() is not shell.welcome and shell.in_sight().command(name):
+        if not shell.pages.welcoming and shell.pages.in_sight.command(name):
             return
         if shell.navigator.command(name) or shell.timeline.command(name) or shell.files.command(name):
             return
@@ -51,8 +52,7 @@ class Dispatch:
             "cancel": project.cancel_work,
             "cancel_work": project.cancel_work,
             "propagate": keeper.run_missing,
-            "video": lambda: shell.show_workspace("video"),
-            "character": lambda: shell.show_workspace("character"),
+            **{page: partial(shell.show_workspace, page) for page in shell.pages.workspaces},
             "history": lambda: shell.side.ask_for("history"),
             "log": lambda: shell.side.ask_for("log"),
             "light": self.switch_look,

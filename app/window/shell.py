@@ -4,29 +4,29 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QTimer
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QImage
-from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QSplitter, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from app.actions.session import Session
 from app.model.document import Document
 from app.window import files, icons, settings
 from app.window.background_call import BackgroundCalls
 from app.window.character import CharacterWorkspace
-from app.window.controls import ErrorBar
 from app.window.dispatch import Dispatch
 from app.window.file_commands import FileCommands
-from app.window.lanes_of import character_lanes, video_lanes
 from app.window.navigation import Navigator
 from app.window.opening import Opened
 from app.window.panels import SidePanel
 from app.window.project import Project
+from app.window.split import Split
 from app.window.statusline import StatusLine
 from app.window.timeline_panel import TimelinePanel
 from app.window.topbar import TopBar
 from app.window.video import VideoWorkspace
 from app.window.viewport.hosts import Choice
 from app.window.welcome import Welcome
+from app.window.workspaces import Pages, Workspace, first_workspace
 
 AUTOSAVE = 60_000
 
@@ -37,7 +37,6 @@ class Shell(QMainWindow):
     def __init__(self, session: Session, *, viewport: Choice = "auto") -> None:
         super().__init__()
         self.opened: Opened | None = None
-        self.workspace = "video"
         self.setWindowTitle("Motionwright")
         self.setWindowIcon(icons.application_icon())
         self.setMinimumSize(1180, 720)
@@ -45,6 +44,7 @@ class Shell(QMainWindow):
         self.setAcceptDrops(True)
         self.bar, self.status, self.timeline = TopBar(), StatusLine(), TimelinePanel()
         self.video, self.character, self.welcome = VideoWorkspace(), CharacterWorkspace(viewport), Welcome()
+        self.pages = Pages({"video": self.video, "character": self.character}, self.welcome)
         self.side = SidePanel()
         self.calls = BackgroundCalls(self)
         self.files = FileCommands(self)
@@ -67,18 +67,7 @@ class Shell(QMainWindow):
         self.open_session(session)
 
     def _build(self) -> None:
-        self.stack = QStackedWidget()
-        for widget in (self.video, self.character, self.welcome):
-            self.stack.addWidget(widget)
-        self.split = QSplitter(Qt.Orientation.Vertical)
-        self.split.setHandleWidth(8)
-        self.split.setChildrenCollapsible(False)
-        self.split.addWidget(self.stack)
-        self.split.addWidget(self.timeline)
-        self.split.setStretchFactor(0, 1)
-        self.split.setStretchFactor(1, 0)
-        self._sized = False
-        self.split.splitterMoved.connect(self._resized_by_hand)
+        self.split = Split(self.pages, self.timeline)
         body = QWidget()
         body.setObjectName("body")
         inner = QHBoxLayout(body)
@@ -98,7 +87,7 @@ class Shell(QMainWindow):
     def _connect(self) -> None:
         for source in (self.bar, self.welcome, self.timeline.transport):
             source.wanted.connect(self.do)
-        for workspace in (self.video, self.character):
+        for workspace in self.pages.workspaces.values():
             workspace.hint.connect(self._hint)
             workspace.run_wanted.connect(lambda: self.do("propagate"))
             workspace.lanes_changed.connect(lambda: self._lanes.isActive() or self._lanes.start())
@@ -129,12 +118,13 @@ class Shell(QMainWindow):
             signal.connect(lambda: self.bar.show_work(project))
         for signal in (project.selection_changed, project.stage_finished, project.work_changed):
             signal.connect(lambda *_: self._refresh.start())
-        self.character.attach(project, opened.loader)
+        for workspace in self.pages.workspaces.values():
+            workspace.attach(project, opened.loader)
         self._attach()
         self.bar.show_document(project)
         self.bar.show_work(project)
         self.side.attach(project)
-        self.show_workspace("video")
+        self.show_workspace(first_workspace(project.document))
         self._autosave.start()
         self.setFocus()
         opened.keeper.keep_up()
@@ -146,15 +136,16 @@ class Shell(QMainWindow):
         if opened.loader is not None:
             opened.loader.loaded.connect(self._loaded)
             opened.loader.failed.connect(self.tell)
-        self.video.attach(opened.project, opened.loader)
-        self.character.tracks.attach(opened.project, opened.loader)
+        for workspace in self.pages.workspaces.values():
+            workspace.attach_clip(opened.project, opened.loader)
         self.timeline.show_project(opened.project, opened.loader)
         self._show_frame(opened.project.frame)
 
     def _close_project(self) -> None:
         self.navigator.playback.stop()
         self._autosave.stop()
-        self.character.detach()
+        for workspace in self.pages.workspaces.values():
+            workspace.detach()
         opened, self.opened = self.opened, None
         if opened is not None:
             opened.close()
@@ -164,20 +155,18 @@ class Shell(QMainWindow):
 
     def show_workspace(self, name: str) -> None:
         """Show a workspace, or the welcome where there is no clip yet."""
-        self.workspace = name
         self.bar.show_workspace(name)
-        empty = self.project is None or (self.project.document.clip is None and not self.project.document.characters)
-        self.stack.setCurrentWidget(self.welcome if empty else getattr(self, name))
-        self.timeline.setVisible(not empty)
+        self.pages.choose(name, self.project.document if self.project is not None else None)
+        self.timeline.setVisible(not self.pages.welcoming and not self.in_sight().own_timeline)
         if self._picture is not None:
             self.in_sight().show_picture(*self._picture)
         self._refresh.start()
 
     def _changed(self, before: Document, after: Document) -> None:
-        if (before.clip is None) != (after.clip is None) or bool(before.characters) != bool(after.characters):
+        if self.pages.welcoming != self.in_sight().is_empty(after):
             self.show_workspace(self.workspace)
-        self.video.document_changed(before, after)
-        self.character.document_changed(before, after)
+        for workspace in self.pages.workspaces.values():
+            workspace.document_changed(before, after)
         self._refresh.start()
 
     def refresh_soon(self) -> None:
@@ -191,35 +180,16 @@ class Shell(QMainWindow):
             return
         self.in_sight().refresh()
         self.show_lanes()
-        document = project.document
-        clicks = sum(len(track.clicks) for track in document.tracks)
-        edits = sum(len(character.edits) for character in document.characters)
-        counts = f"{len(document.tracks)} points, {clicks} clicks, {len(document.masks)} masks, {edits} pose edits"
-        self.status.show_counts(counts)
-        viewport = self.character.mesh.viewport
-        self.status.device.setText(f"3D: {viewport.host.name}" if viewport is not None else "")
+        self.status.show_counts(self.in_sight().counts(project.document))
+        self.status.device.setText(self.pages.device())
 
     def show_lanes(self) -> None:
         """Show the lanes of the workspace in sight."""
         project = self.project
         if project is None:
             return
-        if self.workspace == "video":
-            lanes = video_lanes(project, self.video.proposals.open(project))
-        else:
-            lanes = character_lanes(project, self.character.motion.solved(project.frame_count))
-        self.timeline.show_lanes(lanes, self.workspace)
-        self._fit_timeline()
-
-    def _resized_by_hand(self) -> None:
-        self._sized = True
-
-    def _fit_timeline(self) -> None:
-        """Give the lanes the room they need, up to two fifths, until the user has chosen otherwise."""
-        height = self.split.height()
-        wanted = min(self.timeline.wanted_height(), 2 * height // 5)
-        if not self._sized and height > 0 and abs(self.split.sizes()[1] - wanted) > 1:
-            self.split.setSizes([height - wanted - 8, wanted])
+        self.timeline.show_lanes(self.in_sight().lanes(), self.in_sight().legend())
+        self.split.fit(self.timeline.wanted_height())
 
     def _show_frame(self, frame: int) -> None:
         self.timeline.show_frame(frame)
@@ -232,9 +202,14 @@ class Shell(QMainWindow):
         self._picture = (frame, picture)
         self.in_sight().show_picture(frame, picture)
 
-    def in_sight(self) -> VideoWorkspace | CharacterWorkspace:
-        """The workspace shown."""
-        return self.video if self.workspace == "video" else self.character
+    @property
+    def workspace(self) -> str:
+        """Name of the workspace chosen."""
+        return self.pages.name
+
+    def in_sight(self) -> Workspace:
+        """The workspace chosen."""
+        return self.pages.in_sight
 
     def _hint(self, sentence: str) -> None:
         if self.sender() is self.in_sight():
@@ -244,23 +219,17 @@ class Shell(QMainWindow):
         project = self.project
         if project is not None:
             where = f", shown at frame {frame}" if frame != project.frame else ""
-            notes = self.video.notes if self.workspace == "video" else self.character.tracks.notes
-            notes.say(sentence + where)
+            self.in_sight().say(sentence + where)
 
     def tell(self, sentence: str, details: str = "") -> None:
         """Say what went wrong in the panel that is seen, and keep it among the messages."""
         self.side.log.add(sentence, details)
-        self._error_bar().tell(sentence, details)
+        self.pages.errors.tell(sentence, details)
 
     def tell_note(self, sentence: str) -> None:
         """Say what went well, or is worth knowing; kept among the messages."""
         self.side.log.add(sentence, level="note")
-        self._error_bar().tell(sentence, level="note")
-
-    def _error_bar(self) -> ErrorBar:
-        if self.stack.currentWidget() is self.welcome:
-            return self.welcome.errors
-        return self.video.errors if self.workspace == "video" else self.character.mesh.errors
+        self.pages.errors.tell(sentence, level="note")
 
     def _propagate_on_release(self, on: bool) -> None:
         if self.opened is not None:
@@ -295,5 +264,6 @@ class Shell(QMainWindow):
         settings.settings().setValue("geometry", self.saveGeometry())
         self._close_project()
         self.calls.close()
-        self.character.close_view()
+        for workspace in self.pages.workspaces.values():
+            workspace.close_view()
         event.accept()

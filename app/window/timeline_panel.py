@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QFrame, QMenu, QScrollArea
@@ -10,10 +10,11 @@ from PySide6.QtWidgets import QFrame, QMenu, QScrollArea
 from app.model.edits import contacts, masks, scene, tracks
 from app.window.controls import Panel
 from app.window.frames import FrameLoader
-from app.window.lanes_of import CHARACTER_LEGEND, VIDEO_LEGEND, worst_near
+from app.window.lanes_of import VIDEO_LEGEND, worst_near
 from app.window.project import Project
 from app.window.timeline import Bar, Lane, LaneEdit, LaneView, TimelineHit, Transport
 from app.window.timeline.lanes import total_height
+from app.window.timeline.transport import Entry
 
 NEARBY = 12.0
 """Pixels round a click in the curve of errors within which the worst frame is looked for."""
@@ -55,11 +56,11 @@ class TimelinePanel(Panel):
         """Pixels that transport and lanes need."""
         return self.transport.height() + total_height(self.lanes.placed) + 4
 
-    def show_lanes(self, lanes: list[Lane], workspace: str) -> None:
-        """Show the lanes of a workspace."""
+    def show_lanes(self, lanes: list[Lane], legend: Sequence[Entry]) -> None:
+        """Show the lanes of a workspace, and their legend."""
         if self.project is None:
             return
-        self.transport.legend.show_entries(VIDEO_LEGEND if workspace == "video" else CHARACTER_LEGEND)
+        self.transport.legend.show_entries(legend)
         self.lanes.show_lanes(lanes, self.project.frame_count)
         range_ = self.project.document.range
         self.lanes.show_range((range_.first, range_.last) if range_ else None)

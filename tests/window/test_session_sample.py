@@ -52,7 +52,7 @@ def test_from_an_empty_window_to_an_exported_motion(
     known = made()
     begin_of(sample_folder() / "clip.mp4", tmp_path / "walk.mp4", FRAMES, SHRINK)
     shell = open_shell(Session.new())
-    assert shell.stack.currentWidget() is shell.welcome
+    assert shell.pages.currentWidget() is shell.welcome
     hands = Hands(shell)
 
     hands.drop(tmp_path / "walk.mp4")

@@ -51,7 +51,7 @@ def drop(shell: Shell, path: Path) -> None:
 
 def test_an_empty_project_invites(empty: Shell) -> None:
     """One sentence, one primary button; no timeline, nothing that cannot be used."""
-    assert empty.stack.currentWidget() is empty.welcome
+    assert empty.pages.currentWidget() is empty.welcome
     assert empty.welcome.open.property("primary") == "true"
     assert not empty.timeline.isVisible()
     assert not empty.bar.undo.isEnabled()
@@ -61,13 +61,13 @@ def test_a_dropped_video_opens_and_undo_takes_it_away(empty: Shell, noise_clip: 
     """The picture appears in the Video workspace; undo goes back to the welcome."""
     drop(empty, noise_clip)
     wait_for(lambda: not empty.video.canvas.picture.isNull())
-    assert empty.stack.currentWidget() is empty.video
+    assert empty.pages.currentWidget() is empty.video
     assert empty.project.frame_count == 12
     assert empty.timeline.isVisible()
     while empty.project.session.history.undo_label is not None:
         empty.do("undo")
     settle()
-    assert empty.stack.currentWidget() is empty.welcome
+    assert empty.pages.currentWidget() is empty.welcome
 
 
 def test_a_dropped_mesh_becomes_a_character(empty: Shell, tmp_path: Path) -> None:
@@ -189,7 +189,7 @@ def test_tabs_and_keys_switch_workspaces(shell: Shell) -> None:
     assert shell.bar.tabs["character"].isChecked()
     assert shell.timeline.lanes.frame == 7
     QTest.mouseClick(shell.bar.tabs["video"], LEFT)
-    assert shell.stack.currentWidget() is shell.video
+    assert shell.pages.currentWidget() is shell.video
 
 
 def test_undo_button_names_what_it_takes_back(shell: Shell) -> None:
@@ -246,7 +246,7 @@ def test_nothing_is_clipped(shell: Shell, size: tuple[int, int], workspace: str)
     for label in shell.findChildren(QLabel):
         if label.isVisible() and type(label).__name__ == "QLabel" and not label.wordWrap():
             assert label.width() >= label.sizeHint().width() - 1, label.text()
-    assert shell.stack.height() > 250
+    assert shell.pages.height() > 250
 
 
 def test_every_control_says_what_it_is(shell: Shell) -> None:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QHBoxLayout, QSplitter, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSplitter
 
 from app.model.character import Character
 from app.model.document import Document
@@ -21,21 +21,21 @@ from app.window.character.posing import Posing
 from app.window.character.track_view import TrackView
 from app.window.controls import Panel
 from app.window.frames import FrameLoader
+from app.window.lanes_of import CHARACTER_LEGEND, character_lanes
 from app.window.project import Project
+from app.window.timeline import Lane
+from app.window.timeline.transport import Entry
 from app.window.viewport import VertexChosen, VertexMoved, VertexMoving, VertexReleased
 from app.window.viewport.hosts import Choice
+from app.window.workspaces import Workspace
 
 HINT = "Click a vertex to select it, drag it to pose the frame. Shift moves it in depth; X, Y, Z hold an axis."
 PAIR = "{} is chosen: click its place on the character to pair them. Esc ends pairing."
 GHOSTS = (-8, -4, 4, 8)
 
 
-class CharacterWorkspace(QWidget):
+class CharacterWorkspace(Workspace):
     """Shows a character in a frame; what the mouse does becomes edits, which spread."""
-
-    hint = Signal(str)
-    run_wanted = Signal()
-    lanes_changed = Signal()
 
     def __init__(self, choice: Choice = "auto") -> None:
         super().__init__()
@@ -47,6 +47,7 @@ class CharacterWorkspace(QWidget):
         self.picture = QImage()
         self.tracks = TrackView()
         self.mesh = MeshView(choice)
+        self.errors = self.mesh.errors
         self.mesh.ghosts = self._ghosts
         self.mesh.happened.connect(self._happened)
         self.mesh.loaded.connect(self.refresh)
@@ -108,6 +109,28 @@ class CharacterWorkspace(QWidget):
         """Close the 3D view; it cannot be shown again."""
         self.detach()
         self.mesh.finish()
+
+    def attach_clip(self, project: Project, loader: FrameLoader | None) -> None:
+        """Show the tracks over another clip."""
+        self.tracks.attach(project, loader)
+
+    def lanes(self) -> list[Lane]:
+        """Tracks, contacts, edited poses, and how far the solution is."""
+        project = self.project
+        return character_lanes(project, self.motion.solved(project.frame_count)) if project is not None else []
+
+    def legend(self) -> Sequence[Entry]:
+        """Give the legend of the lanes."""
+        return CHARACTER_LEGEND
+
+    def device(self) -> str:
+        """Name what draws in 3D."""
+        viewport = self.mesh.viewport
+        return f"3D: {viewport.host.name}" if viewport is not None else ""
+
+    def say(self, sentence: str) -> None:
+        """Say something in passing, over the picture."""
+        self.tracks.notes.say(sentence)
 
     def show_picture(self, frame: int, picture: QImage) -> None:
         """Show a frame: its picture, the pose, its marks."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QMenu, QWidget
+from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QMenu
 
 from app.model.document import Document
 from app.model.values import KeyMask
@@ -15,10 +15,13 @@ from app.window.canvas import Canvas
 from app.window.canvas.gestures import Cancelled, Chosen, Drawing, Drawn, Gesture, Moved, Moving, Placed
 from app.window.controls import ErrorBar, Panel, icon_button, label, toggle, tool
 from app.window.frames import FrameLoader
+from app.window.lanes_of import VIDEO_LEGEND, video_lanes
 from app.window.picture_layers import Shown, layers, missing_evidence, track_at, track_marks
 from app.window.picture_notes import PictureNotes
 from app.window.project import Project
 from app.window.reading import Reading
+from app.window.timeline import Lane
+from app.window.timeline.transport import Entry
 from app.window.video import edits_by_mouse, ground_edits, scene_picking
 from app.window.video.mask_editing import is_part, moved, part_at
 from app.window.video.picture_menu import picture_menu
@@ -27,14 +30,11 @@ from app.window.video.proposals import ContactProposals
 from app.window.video.right_column import RightColumn
 from app.window.video.steps import steps
 from app.window.video.tools import HINTS, LAYERS, NARROW, TOOLS, Tool, gesture_for
+from app.window.workspaces import Workspace
 
 
-class VideoWorkspace(QWidget):
+class VideoWorkspace(Workspace):
     """Shows a frame with its marks; what the mouse does becomes edits."""
-
-    hint = Signal(str)
-    run_wanted = Signal()
-    lanes_changed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -131,8 +131,8 @@ class VideoWorkspace(QWidget):
 
     # showing -----------------------------------------------------------------------------------------------------
 
-    def attach(self, project: Project, loader: FrameLoader | None) -> None:
-        """Take another project."""
+    def attach_clip(self, project: Project, loader: FrameLoader | None) -> None:
+        """Take another clip, or another project with its clip."""
         self.project, self.reading, self.loader = project, Reading(project), loader
         self.shown.before = self.shown.compared = {}
         self.proposals = ContactProposals()
@@ -143,6 +143,18 @@ class VideoWorkspace(QWidget):
         else:
             self.canvas.show_picture(QImage())
         self.refresh()
+
+    def lanes(self) -> list[Lane]:
+        """Pictures and masks, tracks, contacts with those proposed, reprojection."""
+        return video_lanes(self.project, self.proposals.open(self.project)) if self.project is not None else []
+
+    def legend(self) -> Sequence[Entry]:
+        """Give the legend of the lanes."""
+        return VIDEO_LEGEND
+
+    def say(self, sentence: str) -> None:
+        """Say something in passing, over the picture."""
+        self.notes.say(sentence)
 
     def show_picture(self, frame: int, picture: QImage) -> None:
         """Show a frame; picture and marks change together, so that they never belong to different frames."""
