@@ -75,6 +75,7 @@ NAMES = {
     "unlink": "link-variant-off",
     "history": "history",
     "magnet": "magnet",
+    "follow": "run",
 }
 
 
