@@ -112,6 +112,18 @@ def gap_of(error: Any, named: list[MotionName]) -> Gap:
     return Gap(error.start, error.goal, named[error.start].name, named[error.goal].name, mu, edges)
 
 
+def trouble(document: Document, named: list[MotionName], error: BaseException | None) -> tuple[Gap | None, str]:
+    """Say why there is no path, from what its search raised: between which motions, and one sentence."""
+    choice = document.performance
+    sentence = why_not(choice.keys, named, choice.forbidden) if named else ""
+    if sentence or error is None:
+        return None, sentence
+    if not hasattr(error, "goal"):
+        return None, str(error)
+    gap = gap_of(error, named)
+    return gap, gap.sentence
+
+
 def why_not(keys: tuple[KeyMotion, ...], named: list[MotionName], forbidden: tuple[Motion, ...]) -> str:
     """Say with names why key motions cannot be composed whatever the graph; empty where nothing speaks against it."""
     nodes = [_motion_at(named, key.motion) for key in keys]

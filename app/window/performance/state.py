@@ -5,7 +5,7 @@ None of it is part of the document, and none of it is undone.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
@@ -16,6 +16,10 @@ from app.window import theme
 from app.window.playback import Playback
 from app.window.project import Project
 
+if TYPE_CHECKING:
+    from app.actions.performing import MotionName
+    from app.actions.performing_graph import Gap
+
 RESULTS = ("features", "structure", "analysis", "database", "graph", "paths", "performance", "blends")
 
 
@@ -23,7 +27,8 @@ class PerformanceState(QObject):
     """One a window. Parts read it, change it by its methods, and listen to its signals.
 
     ``shows`` says what the playhead runs over: "performance", at ``position``; or "source", the selected sequence at
-    ``source_frame``. Results are the last ones there were: ``fresh`` tells whether they are those of the document.
+    ``source_frame``. The graph is the last one there was: ``fresh`` tells whether it is that of the document.
+    ``problem`` says why there is no path, ``gap`` between which key motions.
     """
 
     sequence_changed = Signal(str)
@@ -50,12 +55,15 @@ class PerformanceState(QObject):
 
     def _forget(self) -> None:
         self.graph: Any = None
-        self.motions: list[Any] = []
+        self.motions: list[MotionName] = []
         self.paths: list[Any] = []
         self.placed: Any = None
         self.blends: Any = None
         self._nodes: dict[tuple[str, int], int] = {}
         self.fresh = False
+        self.gap: Gap | None = None
+        self.problem = ""
+        self._failed: BaseException | None = None
 
     # the project -------------------------------------------------------------------------------------------------
 
@@ -65,6 +73,7 @@ class PerformanceState(QObject):
         if self.project is not None and self.project is not project:
             self.project.document_changed.disconnect(self._changed)
             self.project.stage_finished.disconnect(self._finished)
+            self.project.work_changed.disconnect(self._work_changed)
         self.project = project
         self._forget()
         self.sequence_id, self.node, self.cut = "", -1, -1
@@ -73,6 +82,7 @@ class PerformanceState(QObject):
         if project is not None:
             project.document_changed.connect(self._changed)
             project.stage_finished.connect(self._finished)
+            project.work_changed.connect(self._work_changed)
             if project.document.sequences:
                 self.sequence_id = project.document.sequences[0].id
             self.take_results()
@@ -96,6 +106,17 @@ class PerformanceState(QObject):
         if stage.name.split("/")[0] in RESULTS:
             self.take_results()
 
+    def _work_changed(self) -> None:
+        """A search that failed says so in its own place, with what would help."""
+        if self.project is not None and self._failure() is not self._failed:
+            self.take_results()
+
+    def _failure(self) -> BaseException | None:
+        if self.project is None or not self.document.performance.keys:
+            return None
+        session = self.project.session
+        return session.runner.failure(session.stages.paths)
+
     def take_results(self) -> None:
         """Look which results are there; what is missing stays as it was, and is not fresh."""
         project = self.project
@@ -106,12 +127,22 @@ class PerformanceState(QObject):
             self._forget()
         else:
             self._take_graph(project.result(stages.graph))
-            self.paths = project.result(stages.paths) or []
+            self._take_paths(project.result(stages.paths) or [])
             self.placed = project.result(stages.performance) if self.paths else None
             self.blends = project.result(stages.blends) if self.placed is not None else None
         if self.position >= max(self.frame_count, 1):
             self.show_position(self.frame_count - 1)
         self.results_changed.emit()
+
+    def _take_paths(self, found: list[Any]) -> None:
+        """Take the paths, or why there is none."""
+        from app.actions.performing_graph import trouble
+
+        self._failed = self._failure()
+        self.gap, self.problem = trouble(self.document, self.motions, self._failed)
+        if self.problem or not self.document.performance.keys:
+            found = []
+        self.paths = found
 
     def _take_graph(self, graph: Any) -> None:
         self.fresh = graph is not None
@@ -203,6 +234,13 @@ class PerformanceState(QObject):
             self.show_position(place)
         else:
             self.show_source(self.sequence_id, place)
+
+    def point_at(self, sequence_id: str, frame: int) -> None:
+        """Choose a frame of a sequence without leaving what is shown."""
+        self.select_sequence(sequence_id)
+        if frame != self.source_frame:
+            self.source_frame = frame
+            self.source_changed.emit(sequence_id, frame)
 
     def show_position(self, position: int) -> None:
         """Show a frame of the performance; an earlier look at a source ends."""

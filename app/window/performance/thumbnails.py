@@ -18,7 +18,10 @@ Draw = Callable[[str, int], NDArray[np.uint8]]
 
 
 class Thumbnails(QObject):
-    """Gives pictures of (sequence, frame); ``ready`` says when one that was asked for is there."""
+    """Gives pictures of (sequence, frame); ``ready`` says when one that was asked for is there.
+
+    ``draw`` gives an RGBA picture (h, w, 4); it is called in the thread.
+    """
 
     ready = Signal(str, int)
 
@@ -93,4 +96,5 @@ class Thumbnails(QObject):
 def _image(picture: NDArray[np.uint8]) -> QImage:
     rows = np.ascontiguousarray(picture)
     height, width = rows.shape[:2]
-    return QImage(rows.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
+    made = QImage(rows.data, width, height, 4 * width, QImage.Format.Format_RGBA8888)
+    return made.convertToFormat(QImage.Format.Format_ARGB32_Premultiplied)

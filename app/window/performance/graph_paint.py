@@ -1,0 +1,199 @@
+"""Drawing the motion graph: edges by cost, round pictures in the colour of their sequence, badges of key motions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QPolygonF
+
+from app.window import fonts, theme
+from app.window.performance.graph_view import EdgeMark, GroupMark, Lens, NodeMark, Picture, Place, bow, on_bow
+
+Thumbnail = Callable[[int], QImage | None]
+ROUND = Qt.PenCapStyle.RoundCap
+PICTURED, NAMED = 34.0, 30.0
+"""Least diameter in pixels at which a node shows its picture, and every node its name."""
+
+
+def paint_ground(painter: QPainter, width: int, height: int, lens: Lens) -> None:
+    """The surface, with dots that move with the graph so that panning is felt."""
+    look = theme.active()
+    painter.fillRect(0, 0, width, height, look.colour("canvas"))
+    step = 36.0
+    painter.setPen(QPen(look.colour("line"), 1.4, cap=ROUND))
+    dots = [
+        QPointF(lens.dx % step + column * step, lens.dy % step + row * step)
+        for column in range(-1, int(width / step) + 1)
+        for row in range(-1, int(height / step) + 1)
+    ]
+    painter.drawPoints(dots)
+
+
+def paint_groups(painter: QPainter, groups: tuple[GroupMark, ...], lens: Lens) -> None:
+    """The room of each sequence in a large graph."""
+    painter.setFont(fonts.font(fonts.BODY, QFont.Weight.DemiBold))
+    for group in groups:
+        colour = theme.active().colour(group.colour)
+        x, y = lens.pixel(group.x, group.y)
+        wide, high = group.wide * lens.scale, group.high * lens.scale
+        painter.setPen(QPen(_faded(colour, 90), 1))
+        painter.setBrush(_faded(colour, 18))
+        painter.drawEllipse(QPointF(x, y), wide, high)
+        painter.setPen(_faded(colour, 220))
+        painter.drawText(QRectF(x - wide, y - high + 4, 2 * wide, 18), Qt.AlignmentFlag.AlignCenter, group.name)
+
+
+def paint_edges(painter: QPainter, picture: Picture, lens: Lens, chosen: int) -> None:
+    """All edges; in a large graph only those of the chosen node and of the path are drawn fully."""
+    marks = {mark.node: mark for mark in picture.nodes}
+    for kind in ("faint", "kept", "path"):
+        for edge in picture.edges:
+            if edge.kind == kind and edge.start in marks and edge.goal in marks:
+                whole = kind == "path" or not picture.crowded or chosen in (edge.start, edge.goal)
+                _paint_edge(painter, edge, marks[edge.start], marks[edge.goal], lens, whole, chosen)
+
+
+def _paint_edge(
+    painter: QPainter, edge: EdgeMark, start: NodeMark, goal: NodeMark, lens: Lens, whole: bool, chosen: int
+) -> None:
+    look = theme.active()
+    near = chosen in (edge.start, edge.goal)
+    dim = start.dim or goal.dim
+    if edge.kind == "path":
+        colour, width = look.colour("accent"), 2.2 + 1.6 * edge.strength
+    elif edge.kind == "faint":
+        colour, width = look.colour("line2", 70), 1.0
+    else:
+        colour = look.colour("text2" if near else "line2", 60 if dim or not whole else 230 if near else 150)
+        width = 1.0 + 1.6 * edge.strength
+    gap = lens.scale / 2 + (3.5 if edge.kind == "path" else 2.0)
+    begin, middle, end = bow(lens.pixel(start.x, start.y), lens.pixel(goal.x, goal.y), gap)
+    path = QPainterPath(QPointF(*begin))
+    path.quadTo(QPointF(*middle), QPointF(*end))
+    pen = QPen(colour, width, cap=ROUND)
+    if edge.poor:
+        pen.setDashPattern([4, 3])
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(pen)
+    painter.drawPath(path)
+    if whole and edge.kind != "faint" and math.dist(begin, end) > 12:
+        _paint_head(painter, on_bow(begin, middle, end, 0.86), end, colour, 6.0 + width)
+
+
+def _paint_head(painter: QPainter, before: Place, tip: Place, colour: QColor, size: float) -> None:
+    angle = math.atan2(tip[1] - before[1], tip[0] - before[0])
+    turns = (angle + 2.72, angle - 2.72)
+    points = [QPointF(tip[0] + size * math.cos(turn), tip[1] + size * math.sin(turn)) for turn in turns]
+    points.append(QPointF(*tip))
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(colour)
+    painter.drawPolygon(QPolygonF(points))
+
+
+def paint_costs(painter: QPainter, picture: Picture, lens: Lens) -> None:
+    """The cost of every edge of the path, on a plate in the middle of it."""
+    look = theme.active()
+    face = fonts.font(fonts.CAPTION, QFont.Weight.DemiBold)
+    metrics = QFontMetricsF(face)
+    painter.setFont(face)
+    marks = {mark.node: mark for mark in picture.nodes}
+    for edge in picture.edges:
+        if edge.kind != "path" or edge.start not in marks or edge.goal not in marks:
+            continue
+        start, goal = (lens.pixel(marks[node].x, marks[node].y) for node in (edge.start, edge.goal))
+        x, y = on_bow(*bow(start, goal, lens.scale / 2), 0.5)
+        text = f"{edge.cost:.2f}"
+        plate = QRectF(0, 0, metrics.horizontalAdvance(text) + 10, metrics.height() + 2)
+        plate.moveCenter(QPointF(x, y))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(look.colour("canvas", 235))
+        painter.drawRoundedRect(plate, 4, 4)
+        painter.setPen(look.colour("accent"))
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+
+
+def paint_node(
+    painter: QPainter, mark: NodeMark, lens: Lens, image: QImage | None, *, chosen: bool, hovered: bool, focus: bool
+) -> None:
+    """One motion: picture, ring, name, what is said about it."""
+    look = theme.active()
+    x, y = lens.pixel(mark.x, mark.y)
+    radius = lens.scale / 2
+    circle = QRectF(x - radius, y - radius, 2 * radius, 2 * radius)
+    painter.setOpacity(0.3 if mark.dim and not (chosen or hovered) else 1.0)
+    _paint_inside(painter, mark, circle, image)
+    ring = look.colour(mark.colour)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(QPen(ring, 2.4 if lens.scale >= PICTURED else 1.6))
+    painter.drawEllipse(circle)
+    if mark.on_path or chosen:
+        painter.setPen(QPen(look.colour("text" if chosen else "accent"), 2.4 if chosen else 2.0))
+        painter.drawEllipse(circle.adjusted(-3.6, -3.6, 3.6, 3.6))
+    if chosen and focus:
+        painter.setPen(QPen(look.colour("accent"), 2))
+        painter.drawEllipse(circle.adjusted(-7, -7, 7, 7))
+    if lens.scale >= NAMED or chosen or hovered or mark.on_path:
+        _paint_name(painter, mark, x, y + radius + (7 if mark.on_path or chosen else 4), chosen or hovered)
+    if mark.badges:
+        turned = radius * 0.74
+        paint_badge(painter, x + turned, y - turned, mark.badges)
+    painter.setOpacity(1.0)
+
+
+def _paint_inside(painter: QPainter, mark: NodeMark, circle: QRectF, image: QImage | None) -> None:
+    look = theme.active()
+    painter.setPen(Qt.PenStyle.NoPen)
+    pictured = circle.width() >= PICTURED
+    painter.setBrush(look.colour("panel") if pictured else _faded(look.colour(mark.colour), 120))
+    painter.drawEllipse(circle)
+    if pictured and image is not None and not image.isNull():
+        path = QPainterPath()
+        path.addEllipse(circle)
+        painter.save()
+        painter.setClipPath(path)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        painter.drawImage(circle, image)
+        painter.restore()
+    if mark.forbidden:
+        painter.setBrush(look.colour("canvas", 150))
+        painter.drawEllipse(circle)
+        painter.setBrush(QBrush(look.colour("err", 210), Qt.BrushStyle.BDiagPattern))
+        painter.drawEllipse(circle)
+
+
+def _paint_name(painter: QPainter, mark: NodeMark, x: float, top: float, strong: bool) -> None:
+    look = theme.active()
+    face = fonts.font(fonts.CAPTION, QFont.Weight.DemiBold if strong or mark.on_path else QFont.Weight.Medium)
+    metrics = QFontMetricsF(face)
+    text = metrics.elidedText(mark.name, Qt.TextElideMode.ElideMiddle, 150)
+    plate = QRectF(0, 0, metrics.horizontalAdvance(text) + 8, metrics.height())
+    plate.moveCenter(QPointF(x, top + plate.height() / 2))
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(look.colour("canvas", 190))
+    painter.drawRoundedRect(plate, 3, 3)
+    painter.setFont(face)
+    painter.setPen(look.colour("err" if mark.forbidden else "text" if strong or mark.on_path else "text2"))
+    painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+
+
+def paint_badge(painter: QPainter, x: float, y: float, numbers: tuple[int, ...]) -> None:
+    """The numbers of key motions, in the colour of what the user made."""
+    look = theme.active()
+    face = fonts.font(fonts.CAPTION, QFont.Weight.Bold)
+    text = ", ".join(map(str, numbers))
+    wide = max(20.0, QFontMetricsF(face).horizontalAdvance(text) + 10)
+    plate = QRectF(x - wide / 2, y - 10, wide, 20)
+    painter.setPen(QPen(look.colour("canvas"), 2))
+    painter.setBrush(look.colour("edit"))
+    painter.drawRoundedRect(plate, 10, 10)
+    painter.setFont(face)
+    painter.setPen(look.colour("on_accent"))
+    painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+
+
+def _faded(colour: QColor, alpha: int) -> QColor:
+    made = QColor(colour)
+    made.setAlpha(alpha)
+    return made
