@@ -13,9 +13,11 @@ from app.actions.session import Session
 from app.formats.tvm import guess_facts, open_mesh_frames
 from app.model.document import Document
 from app.model.edits import sequences
-from app.model.performance import CapturedSequence, Motion, SequenceUp
+from app.model.performance import CapturedSequence, Fact, Motion, SequenceUp
+from app.model.values import MediaRef
 from app.stages.results import Animation
 from imitation.errors import InputError, NoSolution
+from imitation.progress import Progress, silent
 
 
 @attrs.frozen
@@ -44,6 +46,70 @@ class MotionName:
         return Motion(self.sequence, self.texton[0])
 
 
+@attrs.frozen
+class FoundSequence:
+    """A sequence of files that was read and is not in the project yet; fields as in ``CapturedSequence``.
+
+    Attributes
+    ----------
+    notes : sentences on what was guessed; empty if nothing.
+    """
+
+    name: str
+    media: MediaRef
+    source_count: int
+    source_fps: float
+    up: SequenceUp
+    unit: float
+    guessed: tuple[Fact, ...]
+    notes: str
+
+
+def read_sequence(
+    session: Session,
+    path: Path,
+    *,
+    name: str | None = None,
+    fps: float | None = None,
+    up: SequenceUp | None = None,
+    unit: float | None = None,
+    copy: bool = False,
+    progress: Progress | None = None,
+) -> FoundSequence:
+    """Look what a sequence of meshes is and bring it in, without changing the document: safe in any thread.
+
+    Raises ``InputError`` when it cannot be read.
+    """
+    report = progress or silent
+    report(0.0)
+    with open_mesh_frames(path) as frames:
+        report(0.2)
+        guess = guess_facts(frames, fps=fps, up=up, unit=unit)
+        count = len(frames)
+    report(0.5)
+    media = session.bring_in(path, copy=copy)
+    chosen = name or (path.name if path.is_dir() else path.stem)
+    return FoundSequence(chosen, media, count, guess.fps, guess.up, guess.unit, guess.guessed, guess.why)
+
+
+def take_sequence(session: Session, found: FoundSequence) -> tuple[str, str]:
+    """Add a sequence that was read; gives its id, and a sentence on what was guessed or converted."""
+    rate, shown, converted = _played(session.document, found.name, found.source_count, found.source_fps)
+    edit = sequences.add_sequence(
+        session.document,
+        name=found.name,
+        media=found.media,
+        frame_count=shown,
+        fps=rate,
+        source_count=found.source_count,
+        source_fps=found.source_fps,
+        up=found.up,
+        unit=found.unit,
+        guessed=found.guessed,
+    )
+    return session.apply(edit).sequences[-1].id, f"{found.notes} {converted}".strip()
+
+
 def add_sequence(
     session: Session,
     path: Path,
@@ -60,26 +126,23 @@ def add_sequence(
 
     Raises ``InputError`` when it cannot be read.
     """
+    return take_sequence(session, read_sequence(session, path, name=name, fps=fps, up=up, unit=unit, copy=copy))
+
+
+def find_again(session: Session, sequence_id: str, path: Path, *, progress: Progress | None = None) -> MediaRef:
+    """Look whether a sequence's files lie at a place, and give the reference to them; the document stays as it is.
+
+    Raises ``InputError`` when something else lies there.
+    """
+    sequence = session.document.sequence(sequence_id)
+    (progress or silent)(0.0)
     with open_mesh_frames(path) as frames:
-        guess = guess_facts(frames, fps=fps, up=up, unit=unit)
-        count = len(frames)
-    chosen = name or (path.name if path.is_dir() else path.stem)
-    notes = [guess.why] if guess.why else []
-    rate, shown, converted = _played(session.document, chosen, count, guess.fps)
-    edit = sequences.add_sequence(
-        session.document,
-        name=chosen,
-        media=session.bring_in(path, copy=copy),
-        frame_count=shown,
-        fps=rate,
-        source_count=count,
-        source_fps=guess.fps,
-        up=guess.up,
-        unit=guess.unit,
-        guessed=guess.guessed,
-    )
-    made = session.apply(edit).sequences[-1]
-    return made.id, " ".join([*notes, converted]).strip()
+        if len(frames) != sequence.source_count:
+            raise InputError(
+                f"{path.name} has {len(frames)} frames, but {sequence.name} was made of {sequence.source_count}: "
+                "choose where its own files lie."
+            )
+    return session.bring_in(path)
 
 
 def add_character_motion(session: Session, character_id: str, *, name: str | None = None) -> tuple[str, str]:
