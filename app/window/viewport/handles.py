@@ -14,12 +14,20 @@ from app.window.canvas import marks
 from app.window.viewport.lens import Lens
 
 AXIS_COLOURS = ("#FF7A7A", "#4CC38A", "#5AA9FF")
-KINDS = {"ray": "2D constraint", "anchor": "3D anchor", "edited": "edited here", "plain": "control vertex"}
+ARM = 44.0
+"""Pixels from a selected handle to the ends of its axes."""
+LEGEND = (("edited", "edited here"), ("anchor", "3D anchor"), ("ray", "2D constraint"))
 
 
 @dataclass(frozen=True)
 class Handle:
-    """A vertex with a meaning: its world place, what it is (ray, anchor, edited, plain), and where it was before."""
+    """A vertex with a meaning.
+
+    vertex, title : which, and its name. place : world. before : where it was before it was moved, world.
+    kind : "ray" held by its image point, "anchor" held in 3D, "edited" moved in this frame, "edited ray" moved there by
+        its image point, "plain" a control vertex that was moved in another frame, or only chosen.
+    warning : it is farther from its point than the limit.
+    """
 
     vertex: int
     title: str
@@ -31,37 +39,38 @@ class Handle:
     before: tuple[float, float, float] | None = None
 
 
-def paint_handles(painter: QPainter, lens: Lens, handles: Sequence[Handle], hovered: int = -1) -> None:
-    """Draw the handles, the selected one last with its axes and its name."""
-    for handle in sorted(handles, key=lambda each: (each.selected, each.kind == "edited")):
+def paint_handles(painter: QPainter, lens: Lens, handles: Sequence[Handle], pointed: Sequence[int] = ()) -> None:
+    """Draw the handles, the selected one last with its axes and its name; those pointed at are named and lit."""
+    for handle in sorted(handles, key=lambda each: (each.selected, each.kind.startswith("edited"))):
         place = lens.to_widget(np.array(handle.place))
         if not np.isfinite(place).all():
             continue
         x, y = float(place[0]), float(place[1])
         _link(painter, lens, handle, x, y)
-        _shape(painter, handle, x, y)
+        if handle.vertex in pointed:
+            painter.setPen(QPen(QColor(255, 255, 255, 200), 1.6))
+            painter.setBrush(QColor(255, 255, 255, 60))
+            painter.drawEllipse(QPointF(x, y), 13.0, 13.0)
+        paint_shape(painter, handle, x, y)
         if handle.selected:
             _axes(painter, lens, handle, x, y)
-        if handle.selected or handle.vertex == hovered:
+        if handle.selected or handle.vertex in pointed:
             marks.plate(painter, x + 14, y - 20, handle.title, theme.active().colour(_colour(handle)))
 
 
 def _colour(handle: Handle) -> str:
-    return {"edited": "edit", "anchor": "contact"}.get(handle.kind, handle.colour)
+    return {"edited": "edit", "edited ray": "edit", "anchor": "contact"}.get(handle.kind, handle.colour)
 
 
-def _shape(painter: QPainter, handle: Handle, x: float, y: float) -> None:
+def paint_shape(painter: QPainter, handle: Handle, x: float, y: float) -> None:
+    """Draw what a handle is: filled for 3D, a ring for an image point, large where it was moved in this frame."""
     colour = theme.active().colour(_colour(handle))
-    if handle.kind == "edited":
-        marks.ring(painter, x, y, colour, 7.5, filled=True)
-    elif handle.kind == "anchor":
-        marks.ring(painter, x, y, colour, 5.5, filled=True)
-    else:
-        marks.ring(painter, x, y, colour, 5.5)
+    radius = 7.5 if handle.kind.startswith("edited") else 5.5
+    marks.ring(painter, x, y, colour, radius, filled=handle.kind in ("edited", "anchor"))
     if handle.warning:
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(theme.active().colour("err"), 2.0))
-        painter.drawEllipse(QPointF(x, y), 10.5, 10.5)
+        painter.drawEllipse(QPointF(x, y), radius + 4.0, radius + 4.0)
 
 
 def _link(painter: QPainter, lens: Lens, handle: Handle, x: float, y: float) -> None:
@@ -75,18 +84,22 @@ def _link(painter: QPainter, lens: Lens, handle: Handle, x: float, y: float) -> 
         marks.ring(painter, float(start[0]), float(start[1]), QColor(255, 255, 255, 150), 4.5, dot=False)
 
 
+def axis_tips(lens: Lens, handle: Handle) -> dict[str, tuple[float, float]]:
+    """Widget places of the ends of a selected handle's axes, by name; those behind the camera are left out."""
+    length = ARM * float(lens.camera.depth(np.array(handle.place))) / lens.camera.K[1, 1]
+    ends = lens.to_widget(np.array(handle.place) + length * np.eye(3))
+    found = zip("xyz", ends.tolist(), strict=True)
+    return {name: (x, y) for name, (x, y) in found if np.isfinite(x + y)}
+
+
 def _axes(painter: QPainter, lens: Lens, handle: Handle, x: float, y: float) -> None:
-    depth = float(lens.camera.depth(np.array(handle.place)))
-    length = 44.0 * depth / lens.camera.K[1, 1]
-    for axis, colour in zip(np.eye(3), AXIS_COLOURS, strict=True):
-        end = lens.to_widget(np.array(handle.place) + axis * length)
-        if not np.isfinite(end).all():
-            continue
-        tip = QPointF(float(end[0]), float(end[1]))
-        for pen in (QPen(marks.UNDERLAY, 4.0), QPen(QColor(colour), 2.0)):
+    colours = dict(zip("xyz", AXIS_COLOURS, strict=True))
+    for name, place in axis_tips(lens, handle).items():
+        tip, colour = QPointF(*place), QColor(colours[name])
+        for pen in (QPen(marks.UNDERLAY, 4.0), QPen(colour, 2.0)):
             painter.setPen(pen)
             painter.drawLine(QPointF(x, y), tip)
         painter.setPen(QPen(marks.UNDERLAY, 1.2))
-        painter.setBrush(QColor(colour))
+        painter.setBrush(colour)
         painter.drawEllipse(tip, 4.0, 4.0)
-    _shape(painter, handle, x, y)
+    paint_shape(painter, handle, x, y)

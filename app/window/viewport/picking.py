@@ -62,3 +62,15 @@ def _covered(vertex: int, pixels: Array, depth: Array, triangles: NDArray[np.int
     nearer = 1 / depth[others]
     inverse = nearer[:, 0] + v * (nearer[:, 1] - nearer[:, 0]) + w * (nearer[:, 2] - nearer[:, 0])
     return bool(np.any(inside & (inverse * depth[vertex] > 1.0 + 1e-3)))
+
+
+def on_mesh(camera: Camera, vertices: Array, faces: NDArray[np.int32], place: tuple[float, float]) -> bool:
+    """Whether a widget place lies on a triangle of the mesh."""
+    local = vertices @ camera.R.T + camera.T
+    image = local @ camera.K.T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pixels = image[:, :2] / image[:, 2:]
+    corners = pixels[_triangles_near(pixels, local[:, 2], faces, place, 0.0)] - place
+    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+    turns = np.stack([p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0] for p, q in ((a, b), (b, c), (c, a))])
+    return bool(((turns >= 0).all(0) | (turns <= 0).all(0)).any())

@@ -7,22 +7,23 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, Qt, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QImage, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.window.canvas.view import View, fitted
-from app.window.viewport.drag import Mode, VertexDrag, VertexReleased
+from app.window.viewport.drag import VertexDrag
+from app.window.viewport.gizmo import Gizmo, GizmoDrag
+from app.window.viewport.gizmo_paint import paint_gizmo
 from app.window.viewport.handles import Handle, paint_handles
 from app.window.viewport.hosts import Choice, choose, make_host
 from app.window.viewport.lens import Lens, clipped, framed
+from app.window.viewport.mouse import Mouse
 from app.window.viewport.orbit import Orbit, around, beside, facing
-from app.window.viewport.picking import pick_vertex
 from imitation.geometry import Camera
 
 Looking = Literal["orbit", "camera", "side"]
 IDLE = 250
-AXIS_KEYS: dict[int, Mode] = {Qt.Key.Key_X: "x", Qt.Key.Key_Y: "y", Qt.Key.Key_Z: "z"}
 
 
 class Surface(QWidget):
@@ -44,10 +45,18 @@ class Surface(QWidget):
 
 
 class Viewport(QWidget):
-    """Shows a mesh, lets a vertex be chosen and dragged. Events come by ``happened``, with plain values."""
+    """Shows a mesh, lets a vertex be chosen and dragged. Events come by ``happened``, with plain values.
+
+    Attributes
+    ----------
+    gizmo : what places the whole character; while it is shown no vertex can be taken.
+    grabbing : whether vertices can be taken.
+    highlighted : a vertex that is pointed at elsewhere, -1 for none.
+    """
 
     happened = Signal(object)
     hovered = Signal(int)
+    view_moved = Signal()
 
     def __init__(self, choice: Choice = "auto", parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -67,9 +76,10 @@ class Viewport(QWidget):
         self.handles: tuple[Handle, ...] = ()
         self.notes: Sequence[Callable[[QPainter, Lens], None]] = ()
         self.calm: Callable[[], bool] = lambda: True
-        self._hover = -1
-        self._drag: VertexDrag | None = None
-        self._turn: tuple[QPointF, bool] | None = None
+        self.gizmo: Gizmo | None = None
+        self.grabbing = True
+        self.highlighted = -1
+        self.mouse = Mouse(self)
         self._idle = QTimer(self)
         self._idle.setSingleShot(True)
         self._idle.setInterval(IDLE)
@@ -106,6 +116,17 @@ class Viewport(QWidget):
         """Show other handles."""
         self.handles = tuple(handles)
         self.surface.update()
+
+    def show_gizmo(self, gizmo: Gizmo | None) -> None:
+        """Show the gizmo, or none; one that is held stays where the hand has it."""
+        self.gizmo = gizmo
+        self.surface.update()
+
+    def highlight(self, vertex: int) -> None:
+        """Show the handle of a vertex that is pointed at elsewhere, -1 for none."""
+        if vertex != self.highlighted:
+            self.highlighted = vertex
+            self.surface.update()
 
     def show_camera(self, camera: Camera | None, picture: QImage | None) -> None:
         """Take the frame's camera and its picture."""
@@ -193,14 +214,17 @@ class Viewport(QWidget):
             # The fine picture takes several times as long: it waits for the end of the work under way.
             self._idle.start()
             return
-        if self.isVisible() and not self._dirty and self._drag is None and self._turn is None:
+        if self.isVisible() and not self._dirty and self.mouse.drag is None and self.mouse.turn is None:
             self._draw(fine=True)
             self.update()
 
     def paint_over(self, painter: QPainter) -> None:
         """Draw handles and notes over the picture."""
         lens = self.lens()
-        paint_handles(painter, lens, self.handles, self._hover)
+        if self.gizmo is not None:
+            paint_gizmo(painter, lens, self.gizmo, getattr(self._drag, "part", self.mouse.part))
+        else:
+            paint_handles(painter, lens, self.handles, (self.mouse.hover, self.highlighted))
         for note in self.notes:
             note(painter, lens)
 
@@ -212,75 +236,52 @@ class Viewport(QWidget):
 
     # mouse and keys ----------------------------------------------------------------------------------------------
 
+    @property
+    def _drag(self) -> VertexDrag | GizmoDrag | None:
+        return self.mouse.drag
+
+    @property
+    def dragging(self) -> bool:
+        """Whether a vertex or the gizmo is held."""
+        return self.mouse.drag is not None
+
     def vertex_at(self, place: tuple[float, float]) -> int:
         """The vertex at a widget place: that of a handle first, else the nearest visible one; -1 for none."""
-        camera = self.lens().camera
-        if self.handles:
-            places = camera.project(np.array([handle.place for handle in self.handles]))
-            away = np.hypot(*(places - place).T)
-            away = np.where(np.isfinite(away), away, np.inf)
-            if away.min() <= 10:
-                return self.handles[int(np.argmin(away))].vertex
-        if not len(self.vertices):
-            return -1
-        found = pick_vertex(camera, self.vertices, self.faces, place)
-        return -1 if found is None else found
+        return self.mouse.vertex_at(place)
+
+    def cancel(self) -> bool:
+        """Give up the drag under way; says whether there was one."""
+        return self.mouse.cancel()
+
+    def move_view(self, dx: float, dy: float, *, panning: bool) -> None:
+        """Turn or shift the view by mouse pixels."""
+        if self.through_camera:
+            if panning:
+                self._fit, self.view = False, self.view.panned(dx, dy)
+        elif panning:
+            self.orbit = self.orbit.shifted(dx, dy, self.height())
+        else:
+            self.orbit = self.orbit.turned(dx, dy)
+        self.view_moved.emit()
+        self.redraw()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Take a vertex, or turn the view."""
-        place = (event.position().x(), event.position().y())
-        keys = event.modifiers()
-        if event.button() == Qt.MouseButton.LeftButton and not keys & Qt.KeyboardModifier.AltModifier:
-            vertex = self.vertex_at(place)
-            if vertex >= 0:
-                mode: Mode = "depth" if keys & Qt.KeyboardModifier.ShiftModifier else "plane"
-                self._drag = VertexDrag(self.lens().camera, vertex, self.vertices[vertex].copy(), mode)
-                self._drag.press(place)
-                return
-        panning = event.button() == Qt.MouseButton.MiddleButton or bool(keys & Qt.KeyboardModifier.ShiftModifier)
-        self._turn = (event.position(), panning)
+        """Take a vertex or the gizmo, or turn the view; the keys go here then."""
+        self.setFocus(Qt.FocusReason.MouseFocusReason)
+        self.mouse.press(event)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Go on with the drag or the turn, or say which vertex the mouse is over."""
-        place = (event.position().x(), event.position().y())
-        if self._drag is not None:
-            self._tell(self._drag.move(place))
-        elif self._turn is not None:
-            self._move_view(event.position())
-        elif self.handles:
-            hover = self._handle_near(place)
-            if hover != self._hover:
-                self._hover = hover
-                self.hovered.emit(hover)
-                self.surface.update()
-
-    def _handle_near(self, place: tuple[float, float]) -> int:
-        places = self.lens().to_widget(np.array([handle.place for handle in self.handles]))
-        away = np.nan_to_num(np.hypot(*(places - place).T), nan=np.inf)
-        return self.handles[int(np.argmin(away))].vertex if away.min() <= 10 else -1
-
-    def _move_view(self, position: QPointF) -> None:
-        if self._turn is None:
-            return
-        before, panning = self._turn
-        step = position - before
-        self._turn = (position, panning)
-        if self.through_camera:
-            if panning:
-                self._fit, self.view = False, self.view.panned(step.x(), step.y())
-        elif panning:
-            self.orbit = self.orbit.shifted(step.x(), step.y(), self.height())
-        else:
-            self.orbit = self.orbit.turned(step.x(), step.y())
-        self.redraw()
+        self.mouse.move(event)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """End the drag or the turn."""
-        if self._drag is not None and event.button() == Qt.MouseButton.LeftButton:
-            drag, self._drag = self._drag, None
-            self._tell(drag.release((event.position().x(), event.position().y())))
-        self._turn = None
+        self.mouse.release(event)
         self._idle.start()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        """The mouse is over nothing any more."""
+        self.mouse.hover_over(-1)
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Show everything, unless a vertex was meant."""
@@ -294,35 +295,21 @@ class Viewport(QWidget):
             self._fit, self.view = False, self.view.zoomed(factor, event.position().x(), event.position().y())
         else:
             self.orbit = self.orbit.closer(factor)
+        self.view_moved.emit()
         self.redraw()
         event.accept()
 
+    def event(self, event: QEvent) -> bool:
+        """Keep the keys of a drag from being taken as commands of the window."""
+        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and self.mouse.wants(event):
+            event.accept()
+            return True
+        return super().event(event)
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Give up a drag, or hold it to an axis."""
-        if self._drag is not None and event.key() == Qt.Key.Key_Escape:
-            self.cancel()
-        elif self._drag is not None and event.key() in AXIS_KEYS:
-            mode = AXIS_KEYS[event.key()]
-            self._tell(self._drag.switch("plane" if self._drag.mode == mode else mode))
-        else:
+        if not self.mouse.key(event):
             super().keyPressEvent(event)
-
-    def cancel(self) -> bool:
-        """Give up the drag under way; says whether there was one."""
-        drag, self._drag = self._drag, None
-        if drag is None:
-            return False
-        self._tell(drag.cancel() or VertexReleased(drag.vertex))
-        return True
-
-    @property
-    def dragging(self) -> bool:
-        """Whether a vertex is held."""
-        return self._drag is not None
-
-    def _tell(self, event: object | None) -> None:
-        if event is not None:
-            self.happened.emit(event)
 
     # the end -----------------------------------------------------------------------------------------------------
 

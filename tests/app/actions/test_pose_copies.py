@@ -36,7 +36,7 @@ def test_of_a_vertex_on_its_ray_only_the_image_point_is_held(session: Session) -
     world = session.result(session.stages.world)
     camera = world.camera(FRAME)
     size = np.linalg.norm(np.ptp(before[0], axis=0))
-    pixel = camera.project(before[FRAME, vertex]) + [14.0, -9.0]
+    pixel = np.add(camera.project(before[FRAME, vertex]), [14.0, -9.0])
     held = camera.lift(pixel, float(camera.depth(before[FRAME, vertex])) + 0.1 * size)
     drag = posing.PoseDrag(session, character, FRAME)
     drag.move({vertex: held}, on_rays=[vertex])
