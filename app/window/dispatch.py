@@ -6,27 +6,42 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
+from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QApplication
 
 from app.window import settings, theme
+from app.window.controls import renew_tooltips
+from app.window.key_map import key_map
 from app.window.key_sheet import KeySheet
-from app.window.keys import COMMANDS
+from app.window.keys import COMMANDS, keys_of
 
 if TYPE_CHECKING:
     from app.window.shell import Shell
 
 
-class Dispatch:
+class Dispatch(QObject):
     """Asks the workspace in sight first, then time, files, and the window; belongs to one window."""
 
     def __init__(self, shell: Shell) -> None:
+        super().__init__(shell)
         self.shell = shell
-        for command in COMMANDS:
-            action = QAction(command.text, shell)
-            action.setShortcuts([QKeySequence(key) for key in command.keys])
-            action.triggered.connect(lambda _=False, name=command.id: self.do(name))
+        self._actions = {command.id: QAction(command.text, shell) for command in COMMANDS}
+        for name, action in self._actions.items():
+            action.triggered.connect(lambda _=False, name=name: self.do(name))
             shell.addAction(action)
+        self._bind()
+        key_map().changed.connect(self._bind_again)
+
+    def _bind(self) -> None:
+        for name, action in self._actions.items():
+            action.setShortcuts([QKeySequence(key) for key in keys_of(name)])
+
+    def _bind_again(self) -> None:
+        self._bind()
+        renew_tooltips(self.shell)
+        if self.shell.project is not None:
+            self.shell.bar.show_document(self.shell.project)
 
     def do(self, name: str) -> None:
         """Do a command."""

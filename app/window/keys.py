@@ -1,4 +1,7 @@
-"""Every command of the window: what it is called, its keys, where it belongs. Keys stand here and nowhere else."""
+"""Every command of the window: what it is called, its keys, where it belongs. Keys stand here and nowhere else.
+
+What is listed are the keys that a command comes with; a person may give it others (``assign``).
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ COMMANDS = (
     Command("export", "Export…", ("Ctrl+E",)),
     Command("undo", "Undo", ("Ctrl+Z",), "Edit"),
     Command("redo", "Redo", ("Ctrl+Shift+Z", "Ctrl+Y"), "Edit"),
-    Command("delete", "Delete what is selected", ("Delete",), "Edit"),
+    Command("delete", "Delete what is selected", ("Del",), "Edit"),
     Command("cancel", "Cancel the tool or the running work", ("Esc",), "Edit"),
     Command("propagate", "Run what is missing", ("Ctrl+Return",), "Edit"),
     Command("nudge_left", "Move the selected point left", ("Ctrl+Left",), "Edit"),
@@ -40,6 +43,8 @@ COMMANDS = (
     Command("contact_here", "Contact of the selected point in this frame, or not", ("Shift+C",), "Edit"),
     Command("propose_contacts", "Propose contacts", ("Ctrl+Shift+C",), "Edit"),
     Command("accept_contacts", "Accept proposed contacts", ("Shift+Return",), "Edit"),
+    Command("snap_contact", "Put the selected point's contact onto the measured surface", ("S",), "Edit"),
+    Command("measure_background", "Measure the background", (), "Edit"),
     Command("end_point", "End the selected point here", ("E",), "Edit"),
     Command("hide_point", "The selected point is hidden here, or not", ("X",), "Edit"),
     Command("draw_point", "Draw the selected point, or not", ("Shift+H",), "Edit"),
@@ -78,13 +83,15 @@ COMMANDS = (
     Command("layer_names", "Names", ("Alt+4",), "View"),
     Command("layer_camera", "Points that the cameras were solved from", ("Alt+5",), "View"),
     Command("layer_grid", "Grid on the ground, horizon", ("Alt+6",), "View"),
+    Command("layer_background", "Measured background: depth, confidence, clean plate", ("Alt+7",), "View"),
     Command("look_camera", "Look through the camera", ("1",), "View"),
     Command("look_side", "Look from the side", ("2",), "View"),
     Command("look_orbit", "Orbit", ("3",), "View"),
     Command("history", "History", ("Ctrl+H",), "View"),
     Command("log", "Messages", ("Ctrl+L",), "View"),
     Command("light", "Light or dark", (), "View"),
-    Command("keys", "Keys", ("?",), "View"),
+    Command("keys", "Keys…", ("?",), "View"),
+    Command("settings", "Settings…", ("Ctrl+,",), "View"),
     Command("tool_select", "Select", ("V",), "Tools"),
     Command("tool_lasso", "Lasso", ("M",), "Tools"),
     Command("tool_point", "Point", ("P",), "Tools"),
@@ -94,9 +101,56 @@ COMMANDS = (
 )
 
 BY_ID = {command.id: command for command in COMMANDS}
+_DEFAULT = {key: command.id for command in COMMANDS for key in command.keys}
+_own: dict[str, tuple[str, ...]] = {}
+
+
+def keys_of(command_id: str) -> tuple[str, ...]:
+    """The keys of a command as they are now."""
+    return _own.get(command_id, BY_ID[command_id].keys)
 
 
 def shown_key(command_id: str) -> str:
     """The key of a command as it is shown in a tooltip; empty where it has none."""
-    keys = BY_ID[command_id].keys
+    keys = keys_of(command_id)
     return keys[0] if keys else ""
+
+
+def present_key(key: str) -> str:
+    """The key that now does what ``key`` came with, or that a command of this name has; others stay as they are."""
+    command = key if key in BY_ID else _DEFAULT.get(key)
+    return key if command is None else shown_key(command)
+
+
+def holder(key: str) -> Command | None:
+    """The command that a key belongs to now."""
+    return next((command for command in COMMANDS if key in keys_of(command.id)), None)
+
+
+def assign(command_id: str, keys: tuple[str, ...]) -> None:
+    """Give a command other keys; whoever had them loses them."""
+    for command in COMMANDS:
+        left = tuple(key for key in keys_of(command.id) if key not in keys)
+        if command.id != command_id and left != keys_of(command.id):
+            _set(command.id, left)
+    _set(command_id, tuple(dict.fromkeys(keys)))
+
+
+def own_keys() -> dict[str, tuple[str, ...]]:
+    """What differs from the keys that commands come with."""
+    return dict(_own)
+
+
+def set_own_keys(own: dict[str, tuple[str, ...]]) -> None:
+    """Take what was remembered; commands that are no more are left out, and a key belongs to one command only."""
+    _own.clear()
+    for command_id, keys in own.items():
+        if command_id in BY_ID:
+            assign(command_id, keys)
+
+
+def _set(command_id: str, keys: tuple[str, ...]) -> None:
+    if keys == BY_ID[command_id].keys:
+        _own.pop(command_id, None)
+    else:
+        _own[command_id] = keys

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QProgressBar, QToolButton, QWidget
 
 from app.window import icons
-from app.window.controls import Elided, button, icon_button, label
+from app.window.controls import Elided, button, icon_button, label, set_tooltip
 from app.window.keys import COMMANDS, shown_key
 from app.window.project import Project
 
@@ -78,7 +78,7 @@ class TopBar(QWidget):
             tab.setCheckable(True)
             tab.setAutoExclusive(True)
             tab.setFocusPolicy(Qt.FocusPolicy.TabFocus)
-            tab.setToolTip(f"{text}  ({shown_key(name)})")
+            set_tooltip(tab, text, name)
             tab.clicked.connect(lambda _=False, name=name: self.wanted.emit(name))
             self.tabs[name] = tab
             row.addWidget(tab)
@@ -88,8 +88,8 @@ class TopBar(QWidget):
         row = QHBoxLayout()
         row.setSpacing(8)
         row.addStretch(1)
-        self.undo = icon_button("undo", "Undo", lambda: self.wanted.emit("undo"), shown_key("undo"))
-        self.redo = icon_button("redo", "Redo", lambda: self.wanted.emit("redo"), shown_key("redo"))
+        self.undo = icon_button("undo", "Undo", lambda: self.wanted.emit("undo"), "undo")
+        self.redo = icon_button("redo", "Redo", lambda: self.wanted.emit("redo"), "redo")
         self.job = QWidget()
         inner = QHBoxLayout(self.job)
         inner.setContentsMargins(8, 0, 0, 0)
@@ -102,13 +102,13 @@ class TopBar(QWidget):
         inner.addWidget(self.job_text)
         inner.addWidget(self.job_bar)
         inner.addWidget(
-            icon_button("cancel", "Cancel the running work", lambda: self.wanted.emit("cancel_work"), "Esc")
+            icon_button("cancel", "Cancel the running work", lambda: self.wanted.emit("cancel_work"), "cancel")
         )
         self.job.hide()
         for widget in (self.job, self.undo, self.redo):
             row.addWidget(widget)
         self.export = button("Export", lambda: self.wanted.emit("export"), name="export")
-        self.export.setToolTip(f"Meshes, video and cameras for other programs  ({shown_key('export')})")
+        set_tooltip(self.export, "Meshes, video and cameras for other programs", "export")
         row.addWidget(self.export)
         return row
 
@@ -125,8 +125,9 @@ class TopBar(QWidget):
         self.state.setText(f"·  {state}")
         for widget, verb, what in ((self.undo, "Undo", history.undo_label), (self.redo, "Redo", history.redo_label)):
             widget.setEnabled(what is not None)
-            key = shown_key(verb.lower())
-            widget.setToolTip(f"{verb}: {what}  ({key})" if what else f"Nothing to {verb.lower()}")
+            set_tooltip(
+                widget, f"{verb}: {what}" if what else f"Nothing to {verb.lower()}", verb.lower() if what else ""
+            )
 
     def show_work(self, project: Project) -> None:
         """Show the job that has been running longest, and how many more there are."""

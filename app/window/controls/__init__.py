@@ -1,6 +1,6 @@
 """Base controls of the window."""
 
-from app.window.controls.buttons import button, icon_button, toggle, tool
+from app.window.controls.buttons import button, icon_button, renew_tooltips, set_tooltip, toggle, tool
 from app.window.controls.error_bar import ErrorBar
 from app.window.controls.labels import Chip, Elided, Header, Row, label, separator
 from app.window.controls.number import NumberField, NumberRange
@@ -22,7 +22,9 @@ __all__ = [
     "button",
     "icon_button",
     "label",
+    "renew_tooltips",
     "separator",
+    "set_tooltip",
     "toggle",
     "tool",
 ]

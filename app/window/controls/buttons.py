@@ -5,13 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtWidgets import QPushButton, QToolButton
+from PySide6.QtWidgets import QAbstractButton, QPushButton, QToolButton, QWidget
 
 from app.window import icons
+from app.window.keys import present_key
 
 
-def _tooltip(text: str, key: str) -> str:
-    return f"{text}  ({key})" if key else text
+def set_tooltip(button: QAbstractButton, text: str, key: str = "") -> None:
+    """Say what a button does and its key: a command's name, or the key that it comes with."""
+    shown = present_key(key)
+    button.setToolTip(f"{text}  ({shown})" if shown else text)
+    button.setProperty("tip", [text, key])
+
+
+def renew_tooltips(root: QWidget) -> None:
+    """Show the keys as they are now on every button below a widget."""
+    for button in root.findChildren(QAbstractButton):
+        tip = button.property("tip")
+        if tip is not None:
+            set_tooltip(button, *tip)
 
 
 def icon_button(name: str, text: str, call: Callable[[], object] | None = None, key: str = "") -> QToolButton:
@@ -20,7 +32,7 @@ def icon_button(name: str, text: str, call: Callable[[], object] | None = None, 
     button.setIcon(icons.icon(name, "text2", "text2"))
     button.setIconSize(QSize(18, 18))
     button.setFixedSize(30, 28)
-    button.setToolTip(_tooltip(text, key))
+    set_tooltip(button, text, key)
     button.setAccessibleName(text)
     button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     if call is not None:
@@ -38,7 +50,7 @@ def toggle(name: str, text: str, call: Callable[[bool], object], *, on: bool = F
     button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
     button.setCheckable(True)
     button.setChecked(on)
-    button.setToolTip(_tooltip(text, key))
+    set_tooltip(button, text, key)
     button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     button.toggled.connect(call)
     return button
@@ -54,7 +66,7 @@ def tool(name: str, text: str, key: str = "") -> QToolButton:
     button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
     button.setCheckable(True)
     button.setFixedSize(56, 52)
-    button.setToolTip(_tooltip(text, key))
+    set_tooltip(button, text, key)
     button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
     return button
 

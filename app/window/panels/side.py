@@ -6,8 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QToolButton
 
 from app.window import icons, settings
-from app.window.controls import Panel, icon_button
-from app.window.keys import shown_key
+from app.window.controls import Panel, icon_button, set_tooltip
 from app.window.panels.history_list import HistoryList
 from app.window.panels.log_list import LogList
 from app.window.project import Project
@@ -38,7 +37,7 @@ class SidePanel(Panel):
             tab.setText(text)
             tab.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
             tab.setCheckable(True)
-            tab.setToolTip(f"{text}  ({shown_key(name)})")
+            set_tooltip(tab, text, name)
             tab.clicked.connect(lambda _=False, name=name: self.open_page(name))
             self._tabs[name] = tab
             row.addWidget(tab)
