@@ -314,6 +314,12 @@ class Preview(Panel):
         if self.stage is not None:
             self.stage.fit()
 
+    def azimuth(self) -> float | None:
+        """From which side one looks, degrees from +x towards +y; None while nothing is shown."""
+        if self.view.viewport is None or self.frame is None:
+            return None
+        return math.degrees(self.view.viewport.orbit.azimuth)
+
     def _follow(self, on: bool) -> None:
         if self.stage is not None:
             self.stage.follow = on
