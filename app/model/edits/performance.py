@@ -32,6 +32,15 @@ def set_keys(document: Document, keys: Iterable[KeyMotion]) -> Edit:
     return _with_keys(document, given, "Set the key motions")
 
 
+def replace_key(document: Document, place: int, motion: Motion) -> Edit:
+    """Put another motion in the place of a key motion; it is played once."""
+    former = _key(document, place)
+    keys = list(document.performance.keys)
+    keys[place] = KeyMotion(_checked(document, motion))
+    label = f"Replace key motion {_name(document, former.motion)} by {_name(document, motion)}"
+    return _with_keys(document, keys, label)
+
+
 def remove_key(document: Document, place: int) -> Edit:
     """Take a key motion away."""
     key = _key(document, place)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -79,7 +80,7 @@ def _nodes(state: PerformanceState, places: Places, on_path: set[int], typed: st
 def _edges(
     graph: Any, kept: NDArray[np.bool_], shown: set[int], path: tuple[int, ...], *, loop: bool, faint: bool
 ) -> tuple[EdgeMark, ...]:
-    steps = set(zip(path, path[1:], strict=False))
+    steps = set(itertools.pairwise(path))
     if loop and len(path) > 1:
         steps.add((path[-1], path[0]))
     dear = max(float(np.max(graph.complete[kept], initial=0.0)), 1e-9)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from app.model.document import Document
-from app.model.performance import Motion
+from app.model.performance import HardCut, Motion
 from app.stages.stage import Stage
 from app.window import theme
 from app.window.playback import Playback
@@ -186,6 +186,18 @@ class PerformanceState(QObject):
             )
             self._nodes[motion.sequence, motion.frame] = found
         return found
+
+    def cut_motions(self, number: int) -> tuple[Motion, Motion]:
+        """The last frame before a cut and the first after it, as the document names them."""
+        cut, order = self.performance.cuts[number], self.document.sequences
+        leave, enter = (order[self.graph.nodes[node].sequence].id for node in (cut.source, cut.target))
+        return Motion(leave, cut.leave), Motion(enter, cut.enter)
+
+    def hard_cuts(self) -> set[int]:
+        """Numbers of the cuts that shall not be blended."""
+        hard = self.document.performance.hard_cuts
+        cuts = self.performance.cuts if hard and self.performance is not None else ()
+        return {k for k in range(len(cuts)) if HardCut(*self.cut_motions(k)) in hard}
 
     def colour(self, sequence_id: str) -> str:
         """The colour of a sequence everywhere in this workspace."""

@@ -1,0 +1,200 @@
+"""The composed performance: playing, its choices, its blocks and cuts, and what helps where there is no path."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPoint, Qt, Signal
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QMenu
+
+from app.window import theme
+from app.window.controls import Elided, Panel, button, label
+from app.window.performance.blocks import COMPOSED, Block, ComposedHit, composed
+from app.window.performance.composed_view import ComposedView
+from app.window.performance.editing import PerformanceEditing
+from app.window.performance.options_bar import OptionsBar
+from app.window.performance.state import PerformanceState
+from app.window.performance.thumbnails import Thumbnails
+from app.window.timeline.axis import LABELS
+from app.window.timeline.lanes import RULER
+from app.window.timeline.transport import Transport
+
+LEGEND = (("not seen", "ok", "bar"), ("step is seen", "warn", "bar"), ("over the limit", "err", "bar"))
+EMPTY = "Double-click motions in the graph, in the order in which they shall be played. Or drag them here."
+GAP_SHARE = 0.5
+
+
+class GapNote(QFrame):
+    """Lies over the gap: why there is no path, and what can be done."""
+
+    def __init__(self, editing: PerformanceEditing) -> None:
+        super().__init__()
+        self.setObjectName("gapNote")
+        row = QHBoxLayout(self)
+        row.setContentsMargins(10, 2, 8, 2)
+        row.setSpacing(8)
+        self.sentence = QLabel()
+        self.sentence.setProperty("role", "value")
+        self.sentence.setWordWrap(True)
+        self.use = button("Use", editing.use_gap_mu, primary=True)
+        self.pick = button("Pick another", editing.pick_another)
+        row.addWidget(self.sentence, 1)
+        row.addWidget(self.use)
+        row.addWidget(self.pick)
+        self.hide()
+
+    def tell(self, sentence: str, mu: float | None) -> None:
+        """Say it; a mu that helps is offered."""
+        self.sentence.setText(sentence)
+        self.use.setVisible(mu is not None)
+        self.use.setText(f"Use {mu:.4g}" if mu is not None else "")
+        look = theme.active()
+        self.setStyleSheet(
+            f"#gapNote {{ background: {look.panel}; border: 1px solid {look.err}; border-radius: 5px; }}"
+        )
+
+
+class ComposedPanel(Panel):
+    """Shows what is composed, and hands on what the hands do."""
+
+    wanted = Signal(str)
+
+    def __init__(self, state: PerformanceState, editing: PerformanceEditing, thumbnails: Thumbnails) -> None:
+        super().__init__()
+        self.state, self.editing = state, editing
+        self.transport = Transport()
+        self.transport.legend.show_entries(LEGEND)
+        self.transport.buttons["previous_mark"].setToolTip("Previous cut  (Up)")
+        self.transport.buttons["next_mark"].setToolTip("Next cut  (Down)")
+        self.summary = Elided("", "caption")
+        self.summary.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        row = self.transport.layout()
+        assert isinstance(row, QHBoxLayout)
+        row.insertWidget(row.indexOf(self.transport.legend), self.summary, 1)
+        self.options = OptionsBar(state, editing)
+        self.view = ComposedView()
+        self.view.thumbnail = lambda sequence, frame: thumbnails.picture(sequence, frame)
+        self.column.addWidget(self.transport)
+        self.column.addWidget(self.options)
+        self.column.addWidget(self.view)
+        self.note = GapNote(editing)
+        self.note.setParent(self.view)
+        self.empty = label(EMPTY, "caption")
+        self.empty.setParent(self.view)
+        self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._connect()
+
+    def _connect(self) -> None:
+        view, state = self.view, self.state
+        view.sought.connect(state.show_position)
+        view.chosen_key.connect(self._choose_key)
+        view.chosen_cut.connect(self._choose_cut)
+        view.reordered.connect(self.editing.move)
+        view.repeated.connect(self.editing.repeat)
+        view.keyed.connect(self._make_key)
+        view.menu_wanted.connect(self._menu)
+        view.moved.connect(self._place)
+        self.transport.wanted.connect(self.wanted)
+        self.editing.key_changed.connect(self.refresh)
+        state.results_changed.connect(self.refresh)
+        state.document_changed.connect(self.refresh)
+        state.compare_changed.connect(self.refresh)
+        state.cut_changed.connect(self.refresh)
+        state.position_changed.connect(self.show_place)
+        state.source_changed.connect(lambda *_: self.show_place())
+        state.shows_changed.connect(lambda _: self.show_place())
+        state.playback.playing_changed.connect(self.transport.show_playing)
+
+    def refresh(self, *_: object) -> None:
+        """Show the performance as it is."""
+        state = self.state
+        if self.editing.key >= len(state.document.performance.keys):
+            self.editing.key = -1
+        self.view.show_composed(composed(state, GAP_SHARE))
+        self.view.show_choice(self.editing.key, state.cut)
+        self.options.refresh()
+        self.summary.setText(self._words())
+        self.summary.setStyleSheet(f"color: {theme.active().err};" if state.problem and state.gap is None else "")
+        self.show_place()
+        self._place()
+
+    def _words(self) -> str:
+        state = self.state
+        keys, performance = state.document.performance.keys, state.performance
+        if not keys:
+            return ""
+        if state.problem:
+            return state.problem if state.gap is None else "a key motion is out of reach"
+        many = f"{len(keys)} key motion{'s' if len(keys) > 1 else ''}"
+        if performance is None:
+            return f"{many}, searching"
+        note = f" \N{MIDDLE DOT} {performance.note}" if performance.note else ""
+        return f"{many}, worst transition {performance.cost:.2f}{note}"
+
+    def show_place(self, *_: object) -> None:
+        """Move the playhead and the numbers."""
+        state = self.state
+        self.view.show_position(state.position)
+        self.transport.show_frame(state.position, state.frame_count, state.fps, state.position / max(state.fps, 1e-9))
+
+    def _place(self) -> None:
+        """Put what lies over the lanes where it belongs."""
+        self.empty.setVisible(not self.view.shown.blocks)
+        self.empty.setText(EMPTY if not self.state.document.performance.keys else self._words())
+        self.empty.setGeometry(LABELS, RULER, max(self.view.width() - LABELS, 10), COMPOSED)
+        room = self.view.gap_room()
+        gap = self.state.gap
+        self.note.setVisible(room is not None and gap is not None)
+        if room is not None and gap is not None:
+            self.note.tell(gap.sentence, gap.mu)
+            self.note.setToolTip(f"It brings back {' and '.join(gap.brings)}." if gap.brings else "")
+            left, right = max(room[0] + 8, LABELS + 4), min(room[1] - 8, self.view.width() - 4)
+            wide = max(right - left, 330)
+            left = max(min(left, self.view.width() - 4 - wide), LABELS + 4)
+            self.note.setGeometry(round(left), RULER + 9, round(wide), COMPOSED - 18)
+
+    def _choose_key(self, key: int) -> None:
+        self.editing.choose(key)
+        found = [
+            block for block in self.view.shown.blocks if block.first <= self.state.position < block.first + block.count
+        ]
+        if found and not found[0].gap:
+            self.state.select_node(found[0].node)
+
+    def _choose_cut(self, cut: int) -> None:
+        self.state.select_cut(cut)
+
+    def _make_key(self, index: int) -> None:
+        blocks = self.view.shown.blocks
+        before = sum(len(block.keys) for block in blocks[:index])
+        self.editing.key_through(before, blocks[index].node)
+
+    def _menu(self, found: ComposedHit, where: QPoint) -> None:
+        menu = self.menu_for(found)
+        if menu.actions():
+            menu.popup(where)
+
+    def menu_for(self, found: ComposedHit) -> QMenu:
+        """What can be done with something in the lanes."""
+        menu = QMenu(self)
+        menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        if found.kind in ("block", "more", "fewer"):
+            self._block_menu(menu, found.index, self.view.shown.blocks[found.index])
+        elif found.kind == "joint":
+            hard = self.editing.is_hard(found.index)
+            text = "Blend this cut" if hard else "Leave this cut as it is"
+            menu.addAction(text, lambda: self.editing.set_hard(found.index, not hard))
+        return menu
+
+    def _block_menu(self, menu: QMenu, index: int, block: Block) -> None:
+        editing = self.editing
+        if not block.keys:
+            menu.addAction("Make it a key motion", lambda: self._make_key(index))
+            menu.addAction("Forbid this motion", lambda: editing.forbid(block.node))
+            return
+        key = block.key
+        if block.cyclic:
+            menu.addAction("Play it once more", lambda: editing.repeat(key, 1))
+            if block.repeats > 1:
+                menu.addAction("Play it once less", lambda: editing.repeat(key, -1))
+        menu.addAction("Move it earlier\tCtrl+Left", lambda: editing.move(key, key - 1))
+        menu.addAction("Move it later\tCtrl+Right", lambda: editing.move(key, key + 1))
+        menu.addAction("Remove it\tDel", lambda: editing.remove(key))
