@@ -1,0 +1,234 @@
+"""What is wrong with a motion: where it drifts from the video, where the mesh is stretched, where it sinks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Literal
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from app.actions.session import Session
+from app.model.character import Character
+from app.stages.results import Animation, Array, World
+from imitation.errors import InputError
+
+Kind = Literal["drift", "stretch", "ground", "ambiguous"]
+DRIFT = 3.0 / 540.0
+"""Share of the picture's height that a vertex may be from its point: 3 pixels of a 540p film, which is seen."""
+STRETCH = 1.35
+"""Edges a third longer, or as much shorter, are seen as such on fur and cloth."""
+SUNK = 0.02
+"""Share of the character's height that it may lie below the ground: a paw is softer than that."""
+BEHIND = 0.15
+"""Share of the character's height behind a measured surface that counts as sticking in it and not as hidden."""
+JOIN = 2
+"""Frames between two bad spans that do not part them."""
+
+
+@attrs.frozen
+class Problem:
+    """A span of frames in which something is over its limit.
+
+    Attributes
+    ----------
+    kind : what. subject : the point or limb concerned, empty where it is the mesh. vertex : of the mesh.
+    first, last : frames. worst : the frame to look at. value, limit : what was measured there, and what may be.
+    text : a sentence for people.
+    """
+
+    kind: Kind
+    subject: str
+    vertex: int
+    first: int
+    last: int
+    worst: int
+    value: float
+    limit: float
+    text: str
+
+    @property
+    def severity(self) -> float:
+        """How many times over the limit."""
+        return self.value / self.limit
+
+
+@attrs.frozen(eq=False)
+class Check:
+    """A motion, measured.
+
+    Attributes
+    ----------
+    problems : the worst first.
+    drift : track id -> (n,) pixels, NaN where the point is not seen or the user moved its vertex. limit : pixels.
+    stretch : (n, 2) least and largest length of an edge over that at rest.
+    sunk : (n,) deepest place below the ground, world units; zeros where no ground is known.
+    """
+
+    problems: tuple[Problem, ...]
+    drift: Mapping[str, Array]
+    limit: float
+    stretch: Array
+    sunk: Array
+
+
+def drift_limit(session: Session) -> float:
+    """Pixels that a vertex may be from its point."""
+    clip = session.document.clip
+    return max(DRIFT * clip.height, 1.0) if clip is not None else 3.0
+
+
+def drift_in_frame(session: Session, character_id: str, frame: int, vertices: Array) -> dict[int, float]:
+    """Pixels between paired vertices of a pose (v, 3) and where their points want them, by vertex; unseen ones are left
+    out, and so are all where the motion before any edit is not known.
+    """
+    solved: Any = session.ready(session.stages.base(character_id))
+    if solved is None or frame >= len(solved) or len(vertices) != len(solved.rest):
+        return {}
+    keys = solved.keys
+    seen = np.flatnonzero(keys.observed[frame])
+    away = solved.cameras[frame].project(vertices[keys.vertices[seen]]) - keys.pixels[frame, seen]
+    return dict(zip(keys.vertices[seen].tolist(), np.hypot(*away.T).tolist(), strict=True))
+
+
+def check_motion(session: Session, character_id: str, *, heard: Callable[[], object] | None = None) -> Check:
+    """Measure a whole motion; ``heard`` is called every frame and may raise to stop. It may run in any thread.
+
+    Raises ``InputError`` where the character was not animated.
+    """
+    from imitation.geometry.stretch import VertexStretch
+
+    document, stages = session.document, session.stages
+    character = document.character(character_id)
+    animated, solved = session.ready(stages.animation(character_id)), session.ready(stages.base(character_id))
+    world = session.ready(stages.world)
+    if not isinstance(animated, Animation) or solved is None or not isinstance(world, World):
+        raise InputError(f"{character.name} has not been animated yet: animate it, then check it.")
+    meter = VertexStretch(solved.rest, solved.faces)  # type: ignore[attr-defined]
+    count = len(animated)
+    stretch, sunk = np.ones((count, 2)), np.zeros(count)
+    where = np.zeros((count, 2), np.int64)
+    for frame in range(count):
+        if heard is not None:
+            heard()
+        vertices = animated.vertices[frame]
+        values = meter(vertices)
+        stretch[frame] = values.min(), values.max()
+        where[frame, 0] = int(np.argmax(np.abs(np.log(values))))
+        deep = sunk_in_frame(session, world, frame, vertices)
+        if deep is not None:
+            where[frame, 1] = int(np.argmax(deep))
+            sunk[frame] = deep[where[frame, 1]]
+    drift = _drift(character, solved, animated)
+    limit = drift_limit(session)
+    names = {track.id: track.name for track in document.tracks}
+    height = float(np.ptp(solved.rest[:, 2])) or 1.0  # type: ignore[attr-defined]
+    found = _drifting(drift, limit, names, character)
+    found += _stretched(stretch, where[:, 0])
+    found += _sinking(sunk, SUNK * height, where[:, 1], metric=world.metric)
+    found += _ambiguous(session, character)
+    order = sorted(found, key=lambda each: (-each.severity, each.first, each.subject))
+    return Check(tuple(order), drift, limit, stretch, sunk)
+
+
+def sunk_in_frame(session: Session, world: World, frame: int, vertices: Array) -> Array | None:
+    """How far the vertices (v, 3) of a pose are below the ground (v,), world units; None where no ground is known.
+
+    The ground is where the feet stand and stood: the steps of a stair, else the plane.
+    """
+    from imitation.geometry.penetration import below_ground
+    from imitation.rendering import footing_at
+
+    if world.depth is not None:
+        return None
+    contacts = {
+        track.id: [(each.first, each.last, each.place) for each in placed]
+        for track in session.document.tracks
+        if track.contacts and isinstance(placed := session.ready(session.stages.contacts(track.id)), list) and placed
+    }
+    footing = footing_at(contacts, frame, world.normal)
+    if footing is not None:
+        return below_ground(vertices, footing.points, world.normal)
+    return below_ground(vertices, [world.normal * world.offset], world.normal) if world.grounded else None
+
+
+def _drift(character: Character, solved: Any, animated: Animation) -> dict[str, Array]:
+    from imitation.motion.rays import project_points
+
+    keys = solved.keys
+    away = project_points(solved.cameras, animated.vertices[:, keys.vertices]) - keys.pixels
+    pixels = np.where(keys.observed, np.hypot(away[..., 0], away[..., 1]), np.nan)
+    moved = {vertex for edit in character.edits.values() for vertex, move in edit.moves.items() if not move.muted}
+    columns = {name: pixels[:, number] for number, name in enumerate(keys.names)}
+    # Where the user moved the vertex of a point, the point is no longer what the motion should follow.
+    return {
+        name: np.full(len(pixels), np.nan) if character.pairs.get(name) in moved else column
+        for name, column in columns.items()
+    }
+
+
+def spans(bad: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last frame of each run of True (n,); runs that are close are one."""
+    frames = np.flatnonzero(bad)
+    if not len(frames):
+        return []
+    parts = np.split(frames, np.flatnonzero(np.diff(frames) > JOIN + 1) + 1)
+    return [(int(part[0]), int(part[-1])) for part in parts]
+
+
+def _when(first: int, last: int) -> str:
+    return f"frame {first}" if first == last else f"frames {first}–{last}"
+
+
+def _drifting(
+    drift: Mapping[str, Array], limit: float, names: Mapping[str, str], character: Character
+) -> list[Problem]:
+    found = []
+    for track, pixels in drift.items():
+        for first, last in spans(np.nan_to_num(pixels) > limit):
+            worst = first + int(np.nanargmax(pixels[first : last + 1]))
+            value, name = float(pixels[worst]), names.get(track, track)
+            text = f"{name} drifts {value:.1f} px, {_when(first, last)}"
+            vertex = character.pairs.get(track, -1)
+            found.append(Problem("drift", name, vertex, first, last, worst, value, limit, text))
+    return found
+
+
+def _stretched(stretch: Array, where: NDArray[np.int64]) -> list[Problem]:
+    found, most = [], np.maximum(stretch[:, 1], 1 / np.maximum(stretch[:, 0], 1e-6))
+    for first, last in spans(most > STRETCH):
+        worst = first + int(np.argmax(most[first : last + 1]))
+        value = float(most[worst])
+        longer = stretch[worst, 1] >= value - 1e-12
+        word = f"stretched to {100 * value:.0f} %" if longer else f"squeezed to {100 / value:.0f} %"
+        text = f"Mesh {word}, {_when(first, last)}"
+        found.append(Problem("stretch", "", int(where[worst]), first, last, worst, value, STRETCH, text))
+    return found
+
+
+def _sinking(sunk: Array, limit: float, where: NDArray[np.int64], *, metric: bool) -> list[Problem]:
+    found = []
+    for first, last in spans(sunk > limit):
+        worst = first + int(np.argmax(sunk[first : last + 1]))
+        value = float(sunk[worst])
+        deep = f"{100 * value:.1f} cm" if metric else f"{value:.2g} units"
+        text = f"{deep} below the ground, {_when(first, last)}"
+        found.append(Problem("ground", "", int(where[worst]), first, last, worst, value, limit, text))
+    return found
+
+
+def _ambiguous(session: Session, character: Character) -> list[Problem]:
+    """Limbs that the video explains in two ways, where somebody has looked and no edit has decided yet."""
+    spans_: Any = session.ready(session.stages.ambiguous(character.id))
+    names = {track.id: track.name for track in session.document.tracks}
+    found = []
+    for span in spans_ or ():
+        first, last, decide = int(span.first), int(span.last), int(span.decide)
+        if any(first <= frame <= last for frame in character.edits):
+            continue
+        name = names.get(span.name, span.name)
+        text = f"{name} may be nearer or farther, {_when(first, last)}: an edit decides"
+        vertex = character.pairs.get(span.name, -1)
+        found.append(Problem("ambiguous", name, vertex, first, last, decide, 1.0, 1.0, text))
+    return found
