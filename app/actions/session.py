@@ -11,6 +11,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
 
+from app.actions.collecting import copied_media, with_media_at
 from app.actions.places import unsaved_folder
 from app.formats import FrameSource
 from app.formats.atomic import explained
@@ -168,7 +169,9 @@ class Session:
         held = target.media.is_dir()
         try:
             with explained(target.path):
-                document = _with_copied_media(self.document, self.folder, target) if with_media else self.document
+                document = self.document
+                if with_media:
+                    document = with_media_at(document, copied_media(document, self.folder, target))
                 if self.folder.media.is_dir():
                     shutil.copytree(self.folder.media, target.media, dirs_exist_ok=True)
             target.save(document)
@@ -243,22 +246,3 @@ def _take_back(folder: ProjectFolder, *, media: bool) -> None:
         shutil.rmtree(folder.media, ignore_errors=True)
     with contextlib.suppress(OSError):
         folder.path.rmdir()
-
-
-def _with_copied_media(document: Document, source: ProjectFolder, target: ProjectFolder) -> Document:
-    import attrs
-
-    def copied(media: MediaRef) -> MediaRef:
-        return target.copy_in(source.locate(media)) if media.linked else media
-
-    clip = document.clip
-    if clip is not None:
-        document = attrs.evolve(document, clip=attrs.evolve(clip, media=copied(clip.media)))
-    characters = tuple(attrs.evolve(each, mesh=copied(each.mesh)) for each in document.characters)
-    sequences = tuple(
-        each if each.media is None else attrs.evolve(each, media=copied(each.media)) for each in document.sequences
-    )
-    camera = document.camera
-    if camera.file is not None:
-        camera = attrs.evolve(camera, file=copied(camera.file))
-    return attrs.evolve(document, characters=characters, sequences=sequences, camera=camera)

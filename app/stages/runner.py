@@ -68,6 +68,11 @@ class Runner:
         error = self._failed.get(stage.key)
         return None if error is None else str(error)
 
+    def try_again(self) -> None:
+        """Forget what failed: what it failed for is there now."""
+        with self._lock:
+            self._failed.clear()
+
     def start(self, label: str, targets: tuple[Stage, ...], listener: Listener | None = None) -> Job:
         """Compute what is missing for these stages in the background."""
         return self._begin(Job(label, targets, listener or Silent()), self._compute_all)

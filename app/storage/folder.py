@@ -13,8 +13,11 @@ from app.model.document import Document
 from app.model.values import MediaRef
 from app.storage.schema import document_from_json, document_to_json
 from imitation.errors import InputError
+from imitation.progress import Progress, silent
 
 SUFFIX = ".motionwright"
+COPIED = 4 << 20
+"""Bytes of a medium that are copied between two looks whether to go on."""
 
 
 @attrs.frozen
@@ -94,8 +97,8 @@ class ProjectFolder:
             return None
         return recovered
 
-    def copy_in(self, source: Path) -> MediaRef:
-        """Copy a file or a folder of files into media/ and give its reference."""
+    def copy_in(self, source: Path, progress: Progress | None = None) -> MediaRef:
+        """Copy a file or a folder of files into media/ and give its reference; cancelled, nothing is left of it."""
         if not source.exists():
             raise InputError(f"{source} does not exist: check the path.")
         mark = fingerprint(source)
@@ -109,10 +112,7 @@ class ProjectFolder:
             try:
                 with explained(target):
                     self.media.mkdir(exist_ok=True)
-                    if source.is_dir():
-                        shutil.copytree(source, beside, dirs_exist_ok=True)
-                    else:
-                        shutil.copyfile(source, beside)
+                    _copy(source, beside, progress or silent)
                     beside.rename(target)
             finally:
                 if beside.is_dir():
@@ -147,6 +147,26 @@ class ProjectFolder:
         except OSError as error:
             raise InputError(f"{file} cannot be read ({error.strerror}).") from error
         return document_from_json(data, str(file))
+
+
+def size_of(path: Path) -> int:
+    """Bytes of a file, or of the files of a folder; 0 where there is nothing."""
+    if path.is_dir():
+        return sum(file.stat().st_size for file in path.rglob("*") if file.is_file())
+    return path.stat().st_size if path.exists() else 0
+
+
+def _copy(source: Path, target: Path, progress: Progress) -> None:
+    files = [file for file in source.rglob("*") if file.is_file()] if source.is_dir() else [source]
+    total, done = max(size_of(source), 1), 0
+    for file in sorted(files):
+        place = target / file.relative_to(source) if source.is_dir() else target
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with file.open("rb") as reading, place.open("wb") as writing:
+            while part := reading.read(COPIED):
+                writing.write(part)
+                done += len(part)
+                progress(min(done / total, 1.0))
 
 
 def fingerprint(path: Path) -> str:
