@@ -8,6 +8,8 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from app.actions.session import Session
+from app.stages.results import PlacedContact, World
 from imitation.errors import NoSolution
 
 if TYPE_CHECKING:
@@ -73,3 +75,51 @@ def _normal(surface: DepthMap, spot: Array, place: Array) -> Array:
         return facing
     normal = normal / length
     return normal if normal @ facing > 0 else -normal
+
+
+def distance_words(snapped: Snap, world: World) -> str:
+    """How far away a point is and how sure that is, as a person reads it."""
+    if world.metric:
+        off = 1000 * snapped.residual
+        sure = f"± {off:.0f} mm" if off < 100 else f"± {off / 10:.0f} cm"
+        return f"{snapped.depth:.2f} m away  ·  {sure}"
+    share = 100 * snapped.residual / max(snapped.depth, 1e-9)
+    return f"{snapped.depth:.2f} units away  ·  ± {share:.1f} %"
+
+
+def placed_contact(session: Session, track_id: str, frame: int) -> tuple[PlacedContact, World] | None:
+    """The contact that a track has in a frame as it was placed, and the world it lies in; None where there is none."""
+    world = session.ready(session.stages.world)
+    found = session.ready(session.stages.contacts(track_id))
+    if not isinstance(world, World) or not isinstance(found, list):
+        return None
+    here = next((each for each in found if each.first <= frame <= each.last), None)
+    return None if here is None else (here, world)
+
+
+def contact_words(session: Session, track_id: str, frame: int) -> str:
+    """Where a track's contact in a frame lies and from what that is known; empty where it was not placed yet."""
+    found = placed_contact(session, track_id, frame)
+    if found is None:
+        return ""
+    contact, world = found
+    depth = float(world.camera(frame).depth(contact.place))
+    unit = "m" if world.metric else "units"
+    off = ""
+    if np.isfinite(contact.residual) and contact.residual > 0 and world.metric:
+        off = f", ± {1000 * contact.residual:.0f} mm"
+    how = "put there by hand" if contact.ground == "as given" else contact.ground
+    return f"{depth:.2f} {unit} away{off}: {how}"
+
+
+def anchor_pixel(session: Session, track_id: str, frame: int) -> tuple[float, float] | None:
+    """Where the anchor of a track's contact is seen in a frame; None where it was not placed yet, or lies behind."""
+    found = placed_contact(session, track_id, frame)
+    if found is None:
+        return None
+    contact, world = found
+    camera = world.camera(frame)
+    if float(camera.depth(contact.place)) <= 0:
+        return None
+    x, y = camera.project(contact.place)
+    return float(x), float(y)

@@ -14,8 +14,10 @@ from app.model.values import KeyMask
 from app.window import theme
 from app.window.camera_evidence import evidence, ground_grid, horizon
 from app.window.canvas import GhostPath, GroundGrid, Outline, OutlineLayer, Overlay, ScenePoints, TrackLayer, TrackMark
+from app.window.canvas.backdrop import Backdrop
 from app.window.canvas.hits import GRAB, nearest_point
 from app.window.canvas.overlays import FUTURE, PAST
+from app.window.canvas.snap_layer import SnapMark
 from app.window.project import Project
 from app.window.reading import Reading
 
@@ -28,6 +30,7 @@ class Shown:
 
     mask_part : the part of this frame's mask that is selected (``video.mask_editing``); mask_moving the mask as it is
         being dragged. subtracting : the line being drawn takes away. choosing : points of the scene are being chosen.
+    background : whether the measured background is wanted; backdrop what of it is shown. snap : an anchor on its way.
     picked : the chosen ones, as indices of the cameras' points; picked_tracks the ids of chosen tracks.
         before : the paths of tracks that are being solved again, compared those of tracks that just were.
     """
@@ -39,6 +42,9 @@ class Shown:
     marks: bool = True
     onion: bool = False
     grid: bool = False
+    background: bool = False
+    backdrop: Backdrop | None = None
+    snap: SnapMark | None = None
     choosing: bool = False
     picked: tuple[int, ...] = ()
     picked_tracks: tuple[str, ...] = ()
@@ -84,7 +90,7 @@ def track_marks(project: Project, reading: Reading, frame: int, shown: Shown) ->
 
 def layers(project: Project, marks: tuple[TrackMark, ...], frame: int, shown: Shown) -> list[Overlay]:
     """All layers, the first at the bottom."""
-    made: list[Overlay] = []
+    made: list[Overlay] = [] if shown.backdrop is None else [shown.backdrop]
     if not shown.marks:
         return made
     if shown.grid:
@@ -97,7 +103,7 @@ def layers(project: Project, marks: tuple[TrackMark, ...], frame: int, shown: Sh
     tracks = [track for track in project.document.tracks if track.visible and track.id in old]
     made += [GhostPath(_around(old[track.id], frame), colour_of(track)) for track in tracks]
     made.append(TrackLayer(marks, frame, shown.paths, shown.names, shown.hovered))
-    return made
+    return made if shown.snap is None else [*made, shown.snap]
 
 
 def _masks(project: Project, frame: int, shown: Shown) -> OutlineLayer:

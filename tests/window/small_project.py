@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from app.actions import bringing
 from app.actions.session import Session
@@ -13,12 +15,18 @@ from app.model.edits import characters, contacts, tracks
 FRAMES, SIZE, EVERY = 24, (320, 180), 8
 
 
-def build_small_project(folder: Path) -> Path:
-    """Make the project and solve it; gives its folder."""
+@cache
+def small_clip() -> Any:
+    """The clip with all that is true of it; its arrays are not to be written to."""
     from resources.world.clip import make_clip
     from resources.world.render import Look
 
-    clip = make_clip(frames=FRAMES, stairs=False, look=Look(size=SIZE, samples=1, sky=6), vertices=1200, seed=3)
+    return make_clip(frames=FRAMES, stairs=False, look=Look(size=SIZE, samples=1, sky=6), vertices=1200, seed=3)
+
+
+def build_small_project(folder: Path) -> Path:
+    """Make the project and solve it; gives its folder."""
+    clip = small_clip()
     assert clip.walk is not None
     write_video(folder / "walk.mp4", clip.frames, 25)
     write_cameras(folder / "transforms.json", clip.cameras, SIZE)

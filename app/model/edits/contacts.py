@@ -34,7 +34,8 @@ def add_contact(
             kept.append(contact)
     kept.append(Contact(span, given, accepted))
     verb = "Accept contact of" if accepted else "Mark contact of"
-    return Edit(_with(document, track, kept), f"{verb} {track.name}, frames {span.first}-{span.last}", span.first)
+    frames = f"frame {span.first}" if span.first == span.last else f"frames {span.first}-{span.last}"
+    return Edit(_with(document, track, kept), f"{verb} {track.name}, {frames}", span.first)
 
 
 def marked(track: Track, span: Interval) -> bool:

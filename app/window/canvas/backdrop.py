@@ -15,6 +15,8 @@ from app.window.canvas.overlays import path_through
 from app.window.canvas.view import View
 
 KNOB = 13.0
+KNOB_AT = 0.8
+"""Share of the height at which the line is taken hold of: below what is usually looked at."""
 BAR = (180.0, 10.0)
 
 
@@ -76,7 +78,7 @@ class Backdrop:
         line = QPainterPath(QPointF(x, top))
         line.lineTo(x, bottom)
         marks.stroke(painter, line, look.colour("accent" if self.lit else "text"), 2.0)
-        middle = QPointF(x, (top + bottom) / 2)
+        middle = QPointF(x, top + KNOB_AT * (bottom - top))
         painter.setPen(QPen(marks.UNDERLAY, 3.6))
         painter.setBrush(look.colour("accent" if self.lit else "text"))
         painter.drawEllipse(middle, KNOB, KNOB)

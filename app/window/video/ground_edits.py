@@ -13,6 +13,10 @@ FLAT = ("static", "rotation", "planar")
 """Verdicts on the cameras that leave the depth of the ground open."""
 
 
+FEWEST = 3
+"""Points that a plane needs."""
+
+
 @dataclass(frozen=True)
 class Fallback:
     """What can be assumed where the pictures do not tell: its kind, what the button says, and why."""
@@ -24,6 +28,7 @@ class Fallback:
 
 PLANE = Fallback("plane", "A ground plane", "One level ground under the camera carries all contacts.")
 DEPTH = Fallback("depth", "Constant depth", "No ground: the subject stays equally far from the camera.")
+POINTS = Fallback("points", "Choose points…", "The ground is laid through points of the scene that you choose.")
 STILL = Fallback("still", "Take the camera as still", "The clip is treated as filmed from a stand.")
 
 
@@ -34,12 +39,23 @@ def fallbacks(project: Project) -> tuple[Fallback, ...]:
         return ()
     if path.verdict == "failed":
         return (STILL,) if document.camera.source == "solve" else ()
-    return (PLANE, DEPTH) if path.verdict in FLAT and document.world.ground == "local" else ()
+    if document.world.ground != "local" or not (path.verdict in FLAT or _unmeasured(project)):
+        return ()
+    return (*((POINTS,) if len(path.points) >= FEWEST else ()), PLANE, DEPTH)
+
+
+def _unmeasured(project: Project) -> str:
+    """Why the background could not be measured; empty where it was, or was not tried."""
+    session = project.session
+    failed = project.state(session.stages.depth) == "failed"
+    return (session.runner.why_failed(session.stages.depth) or "") if failed else ""
 
 
 def lead(project: Project) -> str:
     """Why something has to be assumed."""
     path = project.result(project.session.stages.cameras)
+    if path is not None and path.verdict != "failed" and (reason := _unmeasured(project)):
+        return reason
     words = {
         "failed": "The cameras could not be solved.",
         "static": "The camera stands still: the pictures show no depth. Assume:",

@@ -15,6 +15,7 @@ from app.window.lanes_of import DOUBT
 from app.window.project import Project
 from app.window.reading import KnownTrack
 from app.window.video.confidence_strip import ConfidenceStrip
+from app.window.video.contact_info import ContactInfo
 from app.window.video.point_list import PointList
 
 SHOWN_SPANS = 4
@@ -65,6 +66,8 @@ class TrackInspector(ScrollColumn):
         self.suggest = button("Go where a click helps most", self._suggest, name="go")
         column.addWidget(self.suggest)
         column.addWidget(separator())
+        self.contact_info = ContactInfo()
+        column.addWidget(self.contact_info)
         column.addLayout(self._actions())
         self.rows.addWidget(self.body)
         self.rows.addStretch(1)
@@ -108,6 +111,7 @@ class TrackInspector(ScrollColumn):
         self.sure.setText(f"{sure:.2f}" if known.state[frame] else "–")
         self.strip.show_track(known, tuple(track.clicks), frame)
         self.table.show_spans(project, track, frame)
+        self.contact_info.show_contact(project, track, frame)
         clicked = frame in track.clicks
         hidden = any(frame in interval for interval in track.occluded)
         self.remove.setEnabled(clicked and len(track.clicks) > 1)

@@ -5,21 +5,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from app.window import icons
 from app.window.controls import Elided, button, icon_button, label
 from app.window.project import Project
+from app.window.video.background_state import background_state
 from app.window.video.ground_edits import Fallback
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step: its state is done, todo, running, stale, failed or optional."""
+    """One step: its state is done, todo, running, stale, failed or optional; ``action`` has a button of its own."""
 
     title: str
     text: str
     state: str
+    action: str = ""
 
 
 ICONS = {
@@ -30,6 +32,9 @@ ICONS = {
     "todo": ("point", "text3"),
     "optional": ("note", "text3"),
 }
+
+
+ACTIONS = {"measure": ("run", "Measure the background"), "stop": ("cancel", "Stop measuring the background")}
 
 
 def steps(project: Project) -> list[Step]:
@@ -49,6 +54,8 @@ def steps(project: Project) -> list[Step]:
     else:
         made.append(Step("Camera", _words(state), _state(state)))
     made.append(_ground(project))
+    background = background_state(project)
+    made.append(Step("Background", background.text, background.state, background.action))
     if document.characters:
         character = document.character(project.character_id) if project.character_id else document.characters[0]
         pairs = len(character.pairs)
@@ -100,19 +107,20 @@ def _words(state: str) -> str:
 class StepList(QWidget):
     """Shows the steps; ``run`` asks for everything that is missing, ``ground`` for the choice of ground and scale.
 
-    ``assume`` names the fallback that was taken where the pictures do not tell.
+    ``assume`` names the fallback that was taken where the pictures do not tell, ``asked`` the action of a step.
     """
 
     run = Signal()
     ground = Signal()
     assume = Signal(str)
+    asked = Signal(str)
 
     def __init__(self) -> None:
         super().__init__()
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(2)
-        self._rows: list[tuple[QLabel, QLabel, Elided]] = []
+        self._rows: list[tuple[QLabel, QLabel, Elided, QToolButton]] = []
         self._shown: list[Step] = []
         self._offered: tuple[Fallback, ...] = ()
         self.offer = QWidget()
@@ -145,9 +153,9 @@ class StepList(QWidget):
         while len(self._rows) < len(steps_):
             row = QHBoxLayout()
             row.setSpacing(8)
-            widgets = (QLabel(), label("", "value"), Elided("", "label"))
+            widgets = (QLabel(), label("", "value"), Elided("", "label"), self._small_button())
             widgets[0].setFixedSize(18, 20)
-            widgets[1].setFixedWidth(72)
+            widgets[1].setFixedWidth(76)
             for widget in widgets:
                 row.addWidget(widget)
             self._column.insertLayout(len(self._rows), row)
@@ -157,8 +165,24 @@ class StepList(QWidget):
             widgets[0].setPixmap(icons.pixmap(name, token, 16))
             widgets[1].setText(step.title)
             widgets[2].setText(step.text)
-        missing = any(step.state in ("todo", "stale", "failed") for step in steps_)
+            self._show_action(widgets[3], step.action)
+        missing = any(step.state in ("todo", "stale", "failed") and not step.action for step in steps_)
         self.button.setEnabled(missing)
+
+    def _small_button(self) -> QToolButton:
+        made = icon_button("run", "")
+        made.setFixedSize(24, 20)
+        made.clicked.connect(lambda: self.asked.emit(str(made.property("action"))))
+        return made
+
+    def _show_action(self, made: QToolButton, action: str) -> None:
+        made.setVisible(bool(action))
+        if action and made.property("action") != action:
+            name, words = ACTIONS[action]
+            made.setProperty("action", action)
+            made.setIcon(icons.icon(name, "text2", "text2"))
+            made.setToolTip(words)
+            made.setAccessibleName(words)
 
     def show_fallbacks(self, lead: str, offered: tuple[Fallback, ...]) -> None:
         """Offer what can be assumed in place of what the pictures do not tell, with the reason."""

@@ -9,6 +9,7 @@ from app.window.canvas import TrackMark
 from app.window.canvas.gestures import DragGesture, Gesture, LassoGesture, PickGesture, PlaceGesture
 from app.window.picture_layers import track_at
 from app.window.video import mask_editing
+from app.window.video.contact_snapping import ANCHOR
 
 Tool = Literal["select", "lasso", "point", "contact", "ground", "pan"]
 TOOLS: tuple[tuple[Tool, str, str], ...] = (
@@ -26,6 +27,7 @@ LAYERS = (
     ("names", "labels", "Names"),
     ("camera", "camera", "Camera"),
     ("grid", "grid", "Ground"),
+    ("background", "background", "Background"),
 )
 """What can be drawn over the picture and is remembered between runs: name, icon, text."""
 NARROW = 1300
@@ -34,7 +36,7 @@ HINTS: dict[str, str] = {
     "select": "Drag a point, or a mask's corner, edge or inside, to where it belongs. Wheel zooms, middle button pans.",
     "lasso": "Draw round the subject, roughly. Shift adds, Alt takes away; corners and edges can be pulled.",
     "point": "Click a place on the subject that can be recognised: it is followed through the clip.",
-    "contact": "Click a point where it begins to stand, then in the last such frame. C marks the chosen point here.",
+    "contact": "Click a point where it begins to stand, then in the last such frame; drag it onto the surface.",
     "ground": "Click recovered points or draw round them, for the ground or a length. Shift adds, Alt removes.",
     "pan": "Drag to move the picture.",
 }
@@ -50,8 +52,12 @@ def gesture_for(
     adding: bool,
     subtracting: bool,
     key: KeyMask | None = None,
+    anchors: bool = False,
 ) -> Gesture | None:
-    """The gesture that a press at a place starts with a tool; ``key`` is the mask drawn in this frame, if seen."""
+    """The gesture that a press at a place starts with a tool.
+
+    ``key`` is the mask drawn in this frame, if seen; ``anchors`` says that contacts can be dragged over a surface.
+    """
     if tool == "pan":
         return None
     part = mask_editing.part_at(key, place, scale, whole=tool == "select")
@@ -66,8 +72,9 @@ def gesture_for(
     mark = next((each for each in marks if each.name == track), None)
     if mark is not None:
         origin = mark.at(frame) or place
-        slack = 1e9 if tool == "contact" else 2.5 / scale
-        return DragGesture(track, origin, slack)
+        if tool == "contact" and anchors:
+            return DragGesture(f"{ANCHOR}{track}", origin, 2.5 / scale)
+        return DragGesture(track, origin, 1e9 if tool == "contact" else 2.5 / scale)
     if tool == "select" and part and key is not None:
         return mask_editing.drag_of(key, part, place, scale)
     if tool == "point":

@@ -6,14 +6,14 @@ from collections.abc import Callable, Sequence
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QMenu
+from PySide6.QtWidgets import QHBoxLayout, QMenu
 
 from app.model.document import Document
 from app.model.values import KeyMask
 from app.window import settings
 from app.window.canvas import Canvas
-from app.window.canvas.gestures import Cancelled, Chosen, Drawing, Drawn, Gesture, Moved, Moving, Placed
-from app.window.controls import ErrorBar, Panel, icon_button, label, toggle, tool
+from app.window.canvas.gestures import Drawing, Gesture, Moved, Moving
+from app.window.controls import ErrorBar, Panel, icon_button, label, toggle
 from app.window.frames import FrameLoader
 from app.window.lanes_of import VIDEO_LEGEND, video_lanes
 from app.window.picture_layers import Shown, layers, missing_evidence, track_at, track_marks
@@ -23,14 +23,21 @@ from app.window.reading import Reading
 from app.window.timeline import Lane
 from app.window.timeline.transport import Entry
 from app.window.video import edits_by_mouse, ground_edits, scene_picking
-from app.window.video.mask_editing import is_part, moved, part_at
+from app.window.video.background_layers import WIPE, BackgroundLayers
+from app.window.video.contact_snapping import ContactSnapping, free, track_of
+from app.window.video.decisions import decided, move_mask
+from app.window.video.mask_editing import is_part, part_at
 from app.window.video.picture_menu import picture_menu
 from app.window.video.point_windows import PointWindows, windows_of
 from app.window.video.proposals import ContactProposals
 from app.window.video.right_column import RightColumn
 from app.window.video.steps import steps
-from app.window.video.tools import HINTS, LAYERS, NARROW, TOOLS, Tool, gesture_for
+from app.window.video.tool_strip import ToolStrip
+from app.window.video.tools import HINTS, LAYERS, NARROW, Tool, gesture_for
 from app.window.workspaces import Workspace
+
+PLAIN = Qt.CursorShape.CrossCursor
+CURSORS = {"pan": Qt.CursorShape.OpenHandCursor, "select": Qt.CursorShape.ArrowCursor}
 
 
 class VideoWorkspace(Workspace):
@@ -50,32 +57,21 @@ class VideoWorkspace(Workspace):
         self.proposals = ContactProposals()
         self.contact_start: tuple[str, int] | None = None
         self._marks: tuple = ()
+        self.background = BackgroundLayers(self)
+        self.snapping = ContactSnapping(self.background)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(8)
-        row.addWidget(self._strip())
+        self.strip = ToolStrip()
+        self.strip.chosen.connect(self._choose_tool)
+        self.tool_buttons = self.strip.buttons
+        row.addWidget(self.strip)
         row.addWidget(self._middle(), 1)
         self.right = self._right()
         row.addWidget(self.right)
         self._choose_tool("select")
 
     # building ----------------------------------------------------------------------------------------------------
-
-    def _strip(self) -> Panel:
-        strip = Panel()
-        strip.setFixedWidth(64)
-        strip.column.setContentsMargins(3, 6, 3, 6)
-        strip.column.setSpacing(4)
-        self.tools = QButtonGroup(self)
-        self.tool_buttons = {}
-        for name, text, key in TOOLS:
-            each = tool(name, text, key)
-            self.tools.addButton(each)
-            self.tool_buttons[name] = each
-            each.clicked.connect(lambda _=False, name=name: self._choose_tool(name))
-            strip.column.addWidget(each, 0, Qt.AlignmentFlag.AlignHCenter)
-        strip.column.addStretch(1)
-        return strip
 
     def _middle(self) -> Panel:
         self.panel = Panel("Video", " ")
@@ -101,6 +97,8 @@ class VideoWorkspace(Workspace):
             bar.addWidget(widget)
         self.errors = ErrorBar()
         self.panel.column.addWidget(self.errors)
+        self.panel.column.addWidget(self.background.bar)
+        self.background.ready.connect(self.refresh)
         inner = QHBoxLayout()
         inner.setSpacing(0)
         self.windows = PointWindows()
@@ -123,7 +121,9 @@ class VideoWorkspace(Workspace):
         self.inspector.list.chosen.connect(lambda name: self.project and self.project.select_track(name))
         self.scene.cleared.connect(self._choose_nothing)
         self.steps.run.connect(self.run_wanted)
-        self.steps.assume.connect(lambda kind: self.project and ground_edits.choose(self.project, kind))
+        self.steps.assume.connect(self._assume)
+        self.steps.asked.connect(self.background.ask)
+        self.inspector.contact_info.asked.connect(lambda wish: self.command(f"{wish}_contact"))
         self.steps.ground.connect(lambda: self._choose_tool("ground"))
         self.propose_button.clicked.connect(lambda: self.command("propose_contacts"))
         self.accept_button.clicked.connect(lambda: self.command("accept_contacts"))
@@ -137,12 +137,17 @@ class VideoWorkspace(Workspace):
         self.shown.before = self.shown.compared = {}
         self.proposals = ContactProposals()
         self.contact_start = None
+        self.background.attach(project)
         if loader is not None:
             loader.also_ready.connect(lambda _: self.windows.update())
             self.windows.picture = loader.peek
         else:
             self.canvas.show_picture(QImage())
         self.refresh()
+
+    def detach(self) -> None:
+        """End the thread that makes the layers of the background."""
+        self.background.detach()
 
     def lanes(self) -> list[Lane]:
         """Pictures and masks, tracks, contacts with those proposed, reprojection."""
@@ -192,11 +197,11 @@ class VideoWorkspace(Workspace):
         edits_by_mouse.drop_old_paths(self.shown, reading, project)
         frame = self.frame
         self._marks = track_marks(project, reading, frame, self.shown)
+        self._show_background()
         self.canvas.show_layers(layers(project, self._marks, frame, self.shown))
         clip = project.document.clip
         if clip is not None:
-            caption = f"{clip.width} × {clip.height}  ·  {len(project.document.tracks)} points"
-            self.panel.header.caption.setText(caption)
+            self.panel.header.caption.setText(f"{clip.width} × {clip.height}")
             self.notes.show_frame(frame, clip.frame_count, frame / max(clip.fps, 1e-9))
         self.notes.setVisible(clip is not None)
         self._show_windows()
@@ -210,6 +215,16 @@ class VideoWorkspace(Workspace):
         self.steps.show_steps(steps(project))
         self.steps.show_fallbacks(ground_edits.lead(project), ground_edits.fallbacks(project))
         self.canvas.update()
+
+    def _show_background(self) -> None:
+        """The measured background over the picture, and where an anchor under the mouse would lie on it."""
+        shown, held = self.shown, self.snapping.dragged
+        if held is None and self.tool == "contact" and shown.hovered:
+            mark = next((each for each in self._marks if each.name == shown.hovered), None)
+            place = mark.at(self.frame) if mark is not None else None
+            held = (shown.hovered, place) if place is not None else None
+        shown.backdrop = self.background.show(self.frame, shown=shown.background, surface=held is not None)
+        shown.snap = self.snapping.preview(self.frame, *held) if held is not None else None
 
     def _show_windows(self) -> None:
         project, reading = self.project, self.reading
@@ -244,8 +259,7 @@ class VideoWorkspace(Workspace):
         self.shown.choosing = name == "ground"
         self.right.show_scene(name == "ground")
         self.canvas.panning = name == "pan"
-        cursors = {"pan": Qt.CursorShape.OpenHandCursor, "select": Qt.CursorShape.ArrowCursor}
-        self.canvas.setCursor(cursors.get(name, Qt.CursorShape.CrossCursor))
+        self.canvas.setCursor(CURSORS.get(name, PLAIN))
         self.hint.emit(HINTS[name])
         self.refresh()
 
@@ -253,7 +267,16 @@ class VideoWorkspace(Workspace):
         scene_picking.clear(self.shown)
         self.refresh()
 
+    def _assume(self, kind: str) -> None:
+        if kind == "points":
+            self._choose_tool("ground")
+        elif self.project is not None:
+            ground_edits.choose(self.project, kind)
+
     def _begin(self, place: tuple[float, float], keys: Qt.KeyboardModifier) -> Gesture | None:
+        backdrop = self.shown.backdrop
+        if backdrop is not None and self.background.line_at(backdrop, place, self.canvas.view.scale):
+            return self.background.drag_of(backdrop, place)
         return gesture_for(
             self.tool,
             self._marks,
@@ -263,6 +286,7 @@ class VideoWorkspace(Workspace):
             adding=bool(keys & Qt.KeyboardModifier.ShiftModifier),
             subtracting=bool(keys & Qt.KeyboardModifier.AltModifier),
             key=self._mask(),
+            anchors=self.snapping.possible,
         )
 
     def menu_at(self, place: tuple[float, float]) -> QMenu:
@@ -284,6 +308,11 @@ class VideoWorkspace(Workspace):
         return self.project.document.masks.get(self.frame) if self.project is not None and seen else None
 
     def _hovered(self, place: tuple[float, float] | None) -> None:
+        lit = place is not None and self.background.line_at(self.shown.backdrop, place, self.canvas.view.scale)
+        if lit != self.background.lit:
+            self.background.lit = lit
+            self.canvas.setCursor(Qt.CursorShape.SplitHCursor if lit else CURSORS.get(self.tool, PLAIN))
+            self.refresh()
         found = track_at(self._marks, self.frame, place, self.canvas.view.scale) if place is not None else ""
         if found != self.shown.hovered:
             self.shown.hovered = found
@@ -297,53 +326,21 @@ class VideoWorkspace(Workspace):
             self.shown.subtracting = event.subtracting
         elif isinstance(event, Moving) and is_part(event.owner):
             self.shown.mask_part = event.owner
-            self._move_mask(event)
+            move_mask(self, event)
+        elif isinstance(event, Moving | Moved) and event.owner == WIPE:
+            self.background.move_line(event.place[0], self.canvas.picture.width(), done=isinstance(event, Moved))
+        elif isinstance(event, Moving) and track_of(event.owner):
+            self.snapping.dragged = (track_of(event.owner), event.place)
+            self.hint.emit("Let go to put the contact onto the surface here; Esc leaves it where it is.")
         elif isinstance(event, Moving):
             self.shown.dragged = (event.owner, event.place)
             self.project.select_track(event.owner)
             self.hint.emit("Let go to correct the point here; Esc puts it back.")
         else:
             self.shown.dragged, self.shown.drawing, self.shown.mask_moving = None, (), None
-            self._decided(event)
+            self.snapping.dragged = None
+            decided(self, event)
         self.refresh()
-
-    def _move_mask(self, event: Moving) -> None:
-        """Show the mask as it would be if the mouse were let go now."""
-        assert self.project is not None
-        edit = moved(self.project.document, self.frame, event.owner, event.place, event.start)
-        self.shown.mask_moving = edit.document.masks[self.frame]
-
-    def _decided(self, event: object) -> None:
-        project, frame = self.project, self.frame
-        assert project is not None
-        if self.tool == "ground" and isinstance(event, Placed | Drawn):
-            scene_picking.choose(project, self.shown, self._marks, frame, event, self.canvas.view.scale)
-        elif isinstance(event, Moved) and is_part(event.owner):
-            edits_by_mouse.move_mask_part(project, frame, event.owner, event.place, event.start)
-            self.shown.mask_part = ""
-        elif isinstance(event, Moved):
-            project.select_track(event.owner)
-            edits_by_mouse.correct(project, event.owner, frame, event.place)
-        elif isinstance(event, Placed):
-            edits_by_mouse.add_point(project, frame, event.place)
-        elif isinstance(event, Drawn):
-            edits_by_mouse.draw_mask(project, frame, event.points, event.mode, self.canvas.view.scale)
-        elif isinstance(event, Chosen) and is_part(event.owner):
-            project.select_track("")
-            self.shown.mask_part = event.owner
-            self.hint.emit("Delete removes the chosen corner, or the whole lasso where its edge or inside is chosen.")
-            return
-        elif isinstance(event, Chosen):
-            self.shown.mask_part = ""
-            project.select_track(event.owner)
-            if self.tool == "contact" and event.owner:
-                self.contact_start, sentence = edits_by_mouse.mark_contact(
-                    project, event.owner, frame, self.contact_start
-                )
-                self.hint.emit(sentence or HINTS["contact"])
-                return
-        if isinstance(event, Cancelled | Chosen | Moved):
-            self.hint.emit(HINTS[self.tool])
 
     def _proposed(self, sentence: str) -> None:
         self.notes.say(sentence)
@@ -387,6 +384,9 @@ class VideoWorkspace(Workspace):
             "next_problem": lambda: self.notes.say(edits_by_mouse.next_problem(project)),
             "propose_contacts": lambda: self._proposed(self.proposals.find(project)),
             "accept_contacts": lambda: self._proposed(self.proposals.accept(project)),
+            "measure_background": lambda: self.background.ask("measure"),
+            "snap_contact": lambda: self.say(self.snapping.put_selected(frame, self._marks)),
+            "free_contact": lambda: free(project, project.track_id, frame),
             "next_track": project.select_next_track,
             "nudge_left": lambda: nudge(project, self.reading, frame, -0.25, 0.0),
             "nudge_right": lambda: nudge(project, self.reading, frame, 0.25, 0.0),
