@@ -39,10 +39,15 @@ def add_sample_performance(session: Session, folder: Path, *, progress: Progress
     """
     target = folder / f"{TAKES}.npz"
     make_takes(target, progress=progress)
-    made, _ = performing.add_sequence(session, target, name=TAKES, copy=True)
+    join_sample(session, target)
+    target.unlink()
+
+
+def join_sample(session: Session, takes: Path) -> None:
+    """Add the takes, as they were made, and the filmed walk to the sample's project; quick."""
+    made, _ = performing.add_sequence(session, takes, name=TAKES, copy=True)
     # The takes begin facing along +x; where a four-legged performer faces cannot be seen by its shoes.
     session.apply(sequences.set_front(session.document, made, 0.0))
-    target.unlink()
     hound = next(each for each in session.document.characters if each.name == "hound")
     filmed, _ = performing.add_character_motion(session, hound.id, name=FILMED)
     session.apply(sequences.set_level(session.document, filmed, True))

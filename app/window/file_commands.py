@@ -28,9 +28,11 @@ class FileCommands:
             "new": self.new,
             "open": lambda: self._with(files.ask_project(self.shell), self.open),
             "sample": self.sample,
+            "sample_performance": self.sample_performance,
             "save": self.save,
             "save_as": self.save_as,
             "add_clip": lambda: self._with(files.ask_clip(self.shell), self.add_clip),
+            "add_sequence": self.add_sequence,
             "add_character": lambda: self._with(files.ask_mesh(self.shell), self.add_character),
             "export": self.export,
         }
@@ -80,6 +82,13 @@ class FileCommands:
         if self.may_leave():
             self._guard(lambda: self.shell.open_session(sample_session()))
 
+    def sample_performance(self) -> None:
+        """Open the sample and let motions of its hound be made, which are one database with its filmed walk."""
+        from app.window.sample_performance import open_sample_performance
+
+        if self.may_leave():
+            self._guard(lambda: open_sample_performance(self.shell))
+
     def save(self) -> bool:
         """Save where the project lies, or ask where."""
         project = self.shell.project
@@ -119,6 +128,11 @@ class FileCommands:
         project = self.shell.project
         if project is not None:
             self._guard(lambda: bringing.add_clip(project.session, path))
+
+    def add_sequence(self) -> None:
+        """Show the Motion graph, which asks for a sequence."""
+        self.shell.show_workspace("performance")
+        self.shell.performance.library.show_add_menu()
 
     def add_character(self, path: Path) -> None:
         """Take a mesh into the project and show it."""

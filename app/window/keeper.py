@@ -7,6 +7,7 @@ from PySide6.QtCore import QObject, QTimer
 from app.model.document import Document
 from app.stages.job import Job
 from app.stages.stage import Stage
+from app.window import performing_keeper as performing
 from app.window.project import Project
 
 FOLLOWING, SCENE, MOVING = "Following points", "Solving the cameras", "Moving the character"
@@ -57,7 +58,7 @@ class Keeper(QObject):
             self._want("masks", "Carrying the masks", self._missing(stages))
 
     def _finished(self, stage: Stage) -> None:
-        if stage.name.startswith("track/"):
+        if stage.name.startswith("track/") or performing.leads_on(stage):
             self.keep_up()
 
     def keep_up(self) -> None:
@@ -74,6 +75,12 @@ class Keeper(QObject):
         else:
             wanted = self.propagate_on_release and not tracks and self._moved_before()
             self._want("motion", MOVING, motion if wanted else [])
+        self._keep_performance()
+
+    def _keep_performance(self, *, all_: bool = False) -> None:
+        """Sequences, the path through their motions, its clips and cuts: each once the one before is there."""
+        for kind, label, stages in performing.wanted(self.project, all_=all_ or self._going_on("sequences")):
+            self._want(kind, label, self._missing(stages))
 
     def _going_on(self, kind: str) -> bool:
         """Whether work that was asked for by hand is under way."""
@@ -97,7 +104,9 @@ class Keeper(QObject):
         self._want("tracks", FOLLOWING, tracks)
         self._want("scene", SCENE, scene)
         self._want("motion", MOVING, motion)
-        return bool(tracks or scene or motion)
+        self._by_hand.add("sequences")
+        self._keep_performance(all_=True)
+        return bool(tracks or scene or motion or self._alive("sequences") or self._alive("performance"))
 
     def _moved_before(self) -> bool:
         """Whether a motion was solved before: only what was there once is kept up without being asked for."""

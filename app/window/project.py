@@ -22,6 +22,9 @@ from app.window.work import Ears, details
 from imitation.errors import InputError, NoSolution
 from imitation.progress import Progress
 
+SEARCHING = "Searching the best path"
+"""Work whose failure is no accident: where there is no path the timeline of the performance says so, and what helps."""
+
 
 class Project(QObject):
     """Reads the session, calls it, and says what has changed."""
@@ -220,8 +223,8 @@ class Project(QObject):
 
     def _finished(self, job: Job) -> None:
         self.progress.pop(job, None)
-        if job.state == "failed":
-            known = isinstance(job.error, InputError | ModelError | NoSolution)
+        known = isinstance(job.error, InputError | ModelError | NoSolution)
+        if job.state == "failed" and not (known and job.label == SEARCHING):
             sentence = job.sentence if known else f"{job.label} stopped by an error of the program."
             self.failed.emit(sentence, details(job.error))
         self.job_ended.emit(job)

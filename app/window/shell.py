@@ -18,6 +18,7 @@ from app.window.file_commands import FileCommands
 from app.window.navigation import Navigator
 from app.window.opening import Opened
 from app.window.panels import SidePanel
+from app.window.performance import PerformanceWorkspace
 from app.window.project import Project
 from app.window.split import Split
 from app.window.statusline import StatusLine
@@ -44,7 +45,9 @@ class Shell(QMainWindow):
         self.setAcceptDrops(True)
         self.bar, self.status, self.timeline = TopBar(), StatusLine(), TimelinePanel()
         self.video, self.character, self.welcome = VideoWorkspace(), CharacterWorkspace(viewport), Welcome()
-        self.pages = Pages({"video": self.video, "character": self.character}, self.welcome)
+        self.performance = PerformanceWorkspace(viewport)
+        pages = {"video": self.video, "character": self.character, "performance": self.performance}
+        self.pages = Pages(pages, self.welcome)
         self.side = SidePanel()
         self.calls = BackgroundCalls(self)
         self.files = FileCommands(self)
@@ -89,6 +92,7 @@ class Shell(QMainWindow):
             source.wanted.connect(self.do)
         for workspace in self.pages.workspaces.values():
             workspace.hint.connect(self._hint)
+            workspace.wanted.connect(self.do)
             workspace.run_wanted.connect(lambda: self.do("propagate"))
             workspace.lanes_changed.connect(lambda: self._lanes.isActive() or self._lanes.start())
         self.character.inspector.go.connect(self.navigator.go)

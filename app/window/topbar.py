@@ -68,7 +68,7 @@ class TopBar(QWidget):
         row = QHBoxLayout()
         row.setSpacing(4)
         self.tabs = {}
-        for name, text in (("video", "Video"), ("character", "Character")):
+        for name, text in (("video", "Video"), ("character", "Character"), ("performance", "Motion graph")):
             tab = QToolButton()
             tab.setProperty("tab", "true")
             tab.setIcon(icons.icon(name))

@@ -21,7 +21,7 @@ class Workspace(QWidget):
     """A page under a tab of its own.
 
     ``hint`` says what the mouse will do, ``run_wanted`` asks for everything that is missing, ``lanes_changed`` says
-    that the lanes of the timeline may look different now.
+    that the lanes of the timeline may look different now, ``wanted`` names a command that is asked for.
 
     Attributes
     ----------
@@ -32,6 +32,7 @@ class Workspace(QWidget):
     hint = Signal(str)
     run_wanted = Signal()
     lanes_changed = Signal()
+    wanted = Signal(str)
     own_timeline = False
     errors: ErrorBar
 

@@ -155,8 +155,8 @@ def paint_costs(painter: QPainter, shown: Composed, axis: Axis, top: int, height
     painter.drawLine(QPointF(axis.left, base), QPointF(axis.x(max(shown.count, 1)), base))
     cuts = [joint for joint in shown.joints if joint.kind != "wrap"]
     dear = max([joint.cost for joint in cuts], default=0.0)
-    edges = [axis.x(joint.position) for joint in cuts[1:]] + [float(axis.width)]
-    for joint, edge in zip(cuts, edges, strict=True):
+    ends = [axis.x(joint.position) for joint in cuts[1:]] + [float(axis.width)]
+    for joint, edge in zip(cuts, ends, strict=False):
         x = axis.x(joint.position) - (14 if joint.kind == "loop" else 0)
         tall = 4 + (height - 18) * min(joint.cost / dear, 1.0) if dear > 0 else 4
         bar = QRectF(x - 4.5, base - tall, 9, tall)
@@ -219,5 +219,5 @@ def told(joint: Joint) -> str:
 def paint_insertion(painter: QPainter, x: float, height: int) -> None:
     """The line where a key motion would come to stand."""
     look = theme.active()
-    painter.setPen(QPen(look.colour("accent"), 3, cap=Qt.PenCapStyle.RoundCap))
+    painter.setPen(QPen(look.colour("accent"), 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap))
     painter.drawLine(QPointF(x, RULER + 3), QPointF(x, RULER + height - 3))

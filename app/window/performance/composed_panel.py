@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPoint, Qt, Signal
+from PySide6.QtCore import QPoint, Qt, QTimer, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QMenu
 
 from app.window import theme
@@ -80,7 +80,20 @@ class ComposedPanel(Panel):
         self.empty = label(EMPTY, "caption")
         self.empty.setParent(self.view)
         self.empty.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._later = QTimer(self)
+        self._later.setSingleShot(True)
+        self._later.setInterval(40)
+        self._later.timeout.connect(self.view.refresh)
         self._connect()
+
+    def refresh_soon(self) -> None:
+        """Draw the pictures that have come."""
+        if not self._later.isActive():
+            self._later.start()
+
+    def stop(self) -> None:
+        """Wait for nothing."""
+        self._later.stop()
 
     def _connect(self) -> None:
         view, state = self.view, self.state

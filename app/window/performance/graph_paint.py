@@ -12,7 +12,7 @@ from app.window import fonts, theme
 from app.window.performance.graph_view import EdgeMark, GroupMark, Lens, NodeMark, Picture, Place, bow, on_bow
 
 Thumbnail = Callable[[int], QImage | None]
-ROUND = Qt.PenCapStyle.RoundCap
+SOLID, ROUND = Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap
 PICTURED, NAMED = 34.0, 30.0
 """Least diameter in pixels at which a node shows its picture, and every node its name."""
 
@@ -22,7 +22,7 @@ def paint_ground(painter: QPainter, width: int, height: int, lens: Lens) -> None
     look = theme.active()
     painter.fillRect(0, 0, width, height, look.colour("canvas"))
     step = 36.0
-    painter.setPen(QPen(look.colour("line"), 1.4, cap=ROUND))
+    painter.setPen(QPen(look.colour("line"), 1.4, SOLID, ROUND))
     dots = [
         QPointF(lens.dx % step + column * step, lens.dy % step + row * step)
         for column in range(-1, int(width / step) + 1)
@@ -72,7 +72,7 @@ def _paint_edge(
     begin, middle, end = bow(lens.pixel(start.x, start.y), lens.pixel(goal.x, goal.y), gap)
     path = QPainterPath(QPointF(*begin))
     path.quadTo(QPointF(*middle), QPointF(*end))
-    pen = QPen(colour, width, cap=ROUND)
+    pen = QPen(colour, width, SOLID, ROUND)
     if edge.poor:
         pen.setDashPattern([4, 3])
     painter.setBrush(Qt.BrushStyle.NoBrush)

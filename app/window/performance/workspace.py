@@ -1,0 +1,247 @@
+"""The Motion graph workspace: sequences, their motions as a graph, what is composed of them, and how it looks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
+
+from app.model.document import Document
+from app.window.background_call import BackgroundCalls
+from app.window.controls import Panel
+from app.window.frames import FrameLoader
+from app.window.performance.carried import Carried
+from app.window.performance.composed_panel import ComposedPanel
+from app.window.performance.database_panel import DatabasePanel
+from app.window.performance.editing import PerformanceEditing
+from app.window.performance.graph_panel import HINT, GraphPanel
+from app.window.performance.graph_places import GraphPlaces
+from app.window.performance.library import Library
+from app.window.performance.preview import Preview
+from app.window.performance.state import PerformanceState
+from app.window.performance.thumbnails import Thumbnails
+from app.window.performance.time_commands import TimeCommands
+from app.window.performance.trial import Trial
+from app.window.project import Project
+from app.window.viewport.hosts import Choice
+from app.window.workspaces import Workspace
+
+
+class PerformanceWorkspace(Workspace):
+    """Puts the parts side by side, ties them to one state, and answers commands."""
+
+    own_timeline = True
+
+    def __init__(self, choice: Choice = "auto") -> None:
+        super().__init__()
+        self.project: Project | None = None
+        self.calls = BackgroundCalls(self)
+        self.state = PerformanceState(self)
+        self.editing = PerformanceEditing(self.state, self)
+        self.trial = Trial(self.state, self.calls, self)
+        self.places = GraphPlaces(self.state, self.calls, self)
+        self.thumbnails = Thumbnails(self._draw, self)
+        self.time = TimeCommands(self.state)
+        self.library = Library(self.state, self.thumbnails.picture)
+        self.database = DatabasePanel(self.state, self.trial)
+        self.graph = GraphPanel(self.state, self.editing, self.places, self.trial, self.thumbnails)
+        self.preview = Preview(self.state, choice)
+        self.composed = ComposedPanel(self.state, self.editing, self.thumbnails)
+        self.carried = Carried(self)
+        self.errors = self.graph.errors
+        self._build()
+        self._connect()
+
+    def _build(self) -> None:
+        left = QWidget()
+        column = QVBoxLayout(left)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(8)
+        base = Panel()
+        base.column.addWidget(self.database)
+        column.addWidget(self.library, 1)
+        column.addWidget(base)
+        self.across = _splitter(Qt.Orientation.Horizontal, (left, self.graph, self.preview), (0, 1, 0))
+        self.across.setSizes([280, 690, 430])
+        self.down = _splitter(Qt.Orientation.Vertical, (self.across, self.composed), (1, 0))
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(self.down)
+
+    def _connect(self) -> None:
+        self.editing.told.connect(self._told)
+        self.graph.hint.connect(self.hint)
+        self.graph.wanted.connect(self.wanted)
+        self.graph.carried.connect(self._carry)
+        self.graph.dropped.connect(self._drop)
+        self.composed.wanted.connect(self.wanted)
+        self.state.hint.connect(self.hint)
+        self.thumbnails.ready.connect(self._drawn)
+
+    # the project -------------------------------------------------------------------------------------------------
+
+    def attach(self, project: Project, loader: FrameLoader | None) -> None:
+        """Take another project."""
+        self.detach()
+        self.project = project
+        self.state.attach(project)
+        self.library.attach()
+
+    def detach(self) -> None:
+        """Let go of the project."""
+        self.library.detach()
+        self.state.attach(None)
+        self.trial.drop()
+        self.places.forget()
+        self.editing.key = self.editing.replacing = -1
+        self.thumbnails.forget()
+        self.graph.stop()
+        self.composed.stop()
+        self.project = None
+
+    def close_view(self) -> None:
+        """End threads and the render window."""
+        self.detach()
+        self.preview.finish()
+        self.thumbnails.close()
+        self.calls.close()
+
+    def leave(self) -> None:
+        """Nothing plays unseen."""
+        self.state.playback.stop()
+        self.graph.stop()
+
+    def is_empty(self, document: Document) -> bool:
+        """It says itself what to do first."""
+        return False
+
+    def document_changed(self, before: Document, after: Document) -> None:
+        """Pictures of sequences whose files or front changed are drawn anew."""
+        former = {sequence.id: sequence for sequence in before.sequences}
+        for sequence in after.sequences:
+            old = former.get(sequence.id)
+            if old is not None and _looks(old) != _looks(sequence):
+                self.thumbnails.forget(sequence.id)
+
+    def refresh(self) -> None:
+        """Show the project as it is."""
+        self.graph.refresh()
+        self.hint.emit(self._hint())
+
+    def counts(self, document: Document) -> str:
+        """How much there is."""
+        graph = self.state.graph
+        many = f"{len(document.sequences)} sequence{'' if len(document.sequences) == 1 else 's'}"
+        keys = f"{len(document.performance.keys)} key motions"
+        return f"{many}, {len(graph.nodes)} motions, {keys}" if graph is not None else many
+
+    def device(self) -> str:
+        """What draws in 3D."""
+        view = self.preview.view.viewport
+        return view.host.name if view is not None else ""
+
+    def say(self, sentence: str) -> None:
+        """Say it in the line at the bottom."""
+        self.hint.emit(sentence)
+
+    def _hint(self) -> str:
+        if not self.state.document.sequences:
+            return "Add a sequence of meshes to begin."
+        if self.editing.replacing >= 0:
+            return "Double-click the motion that takes the place of the one out of reach. Esc leaves it."
+        return HINT
+
+    def _told(self, sentence: str) -> None:
+        self.hint.emit(sentence)
+        self.graph.errors.tell(sentence, level="note")
+
+    def _draw(self, sequence_id: str, frame: int) -> object:
+        """A picture of a frame; called in the thread that draws them."""
+        from app.actions.performing_cutouts import cutout
+
+        project = self.project
+        assert project is not None
+        return cutout(project.session, sequence_id, frame)
+
+    def _drawn(self, sequence_id: str, frame: int) -> None:
+        self.composed.refresh_soon()
+
+    # carrying motions to the timeline --------------------------------------------------------------------------------
+
+    def _carry(self, node: int, where: QPoint) -> None:
+        view = self.composed.view
+        view.show_insertion(view.place_at(where))
+        inside = self.graph.canvas.rect().contains(self.graph.canvas.mapFromGlobal(where))
+        self.carried.show_at(None if inside else self._picture(node), self.mapFromGlobal(where))
+
+    def _drop(self, node: int, where: QPoint) -> None:
+        view = self.composed.view
+        place = view.place_at(where)
+        view.show_insertion(-1)
+        self.carried.hide()
+        if place >= 0:
+            self.editing.append(node, place)
+
+    def _picture(self, node: int) -> tuple[object, str]:
+        motion = self.state.motions[node]
+        return self.thumbnails.picture(motion.sequence, motion.texton[0]), motion.name
+
+    # commands ----------------------------------------------------------------------------------------------------
+
+    def command(self, name: str) -> bool:
+        """Do a command; those of the clip's time and points mean the performance here, or nothing."""
+        handlers: dict[str, Callable[[], object]] = {
+            "hide_point": lambda: self.editing.forbid(self.state.node),
+            "delete": self._delete,
+            "next_track": self._next_node,
+            "nudge_left": lambda: self.editing.move(self.editing.key, self.editing.key - 1),
+            "nudge_right": lambda: self.editing.move(self.editing.key, self.editing.key + 1),
+            "nudge_up": lambda: self.editing.repeat(self.editing.key, 1),
+            "nudge_down": lambda: self.editing.repeat(self.editing.key, -1),
+            "fit": self.graph.canvas.fit,
+            "fit_time": self.composed.view.show_all,
+            "zoom_time_in": lambda: self.composed.view.zoom(1.5),
+            "zoom_time_out": lambda: self.composed.view.zoom(1 / 1.5),
+            "ghosts": self.preview.ghost_button.toggle,
+            "add_sequence": self.library.show_add_menu,
+        }
+        if name == "cancel":
+            return self._cancel()
+        if name in handlers:
+            handlers[name]()
+            return True
+        return self.time.command(name)
+
+    def _cancel(self) -> bool:
+        given_up = [self.graph.canvas.cancel(), self.composed.view.cancel(), self.editing.cancel()]
+        self.carried.hide()
+        if any(given_up):
+            self.refresh()
+        return any(given_up)
+
+    def _delete(self) -> None:
+        if self.editing.key >= 0:
+            self.editing.remove(self.editing.key)
+        else:
+            self.hint.emit("Choose a key motion in the timeline to remove it.")
+
+    def _next_node(self) -> None:
+        self.graph.canvas.setFocus(Qt.FocusReason.TabFocusReason)
+        self.graph.canvas.choose_next()
+
+
+def _splitter(direction: Qt.Orientation, parts: tuple[QWidget, ...], stretch: tuple[int, ...]) -> QSplitter:
+    made = QSplitter(direction)
+    made.setHandleWidth(8)
+    made.setChildrenCollapsible(False)
+    for number, (part, share) in enumerate(zip(parts, stretch, strict=True)):
+        made.addWidget(part)
+        made.setStretchFactor(number, share)
+    return made
+
+
+def _looks(sequence: object) -> tuple[object, ...]:
+    """What of a sequence changes how its frames look."""
+    names = ("media", "character", "frame_count", "fps", "source_fps", "up", "unit", "front")
+    return tuple(getattr(sequence, name) for name in names)
