@@ -242,3 +242,56 @@ def test_many_views_one_after_the_other(qapp: QApplication, ball: tuple[np.ndarr
         assert view.grab().toImage().pixelColor(100, 75).lightness() > 60
         view.close()
         view.deleteLater()
+
+
+def test_layers_over_the_film_are_chosen_apart_from_those_in_space(view: Viewport) -> None:
+    """Switched off in space the shadow is gone there; over the film the picture itself can be hidden."""
+    base = Orbit((0, 0, 1), 6.0, 0.5, 0.25).camera((600, 450))
+    film = QImage(600, 450, QImage.Format.Format_RGB32)
+    film.fill(QColor(200, 40, 40))
+    view.show_camera(base, film)
+    shadow = view.scene._actors["shadow"]
+    assert shadow.GetVisibility()
+    view.show_layer("shadow", False)
+    assert not shadow.GetVisibility()
+    view.show_layer("shadow", True)
+    view.look("camera")
+    settle()
+    assert not shadow.GetVisibility()
+    assert view.grab().toImage().pixelColor(5, 225).red() > 150
+    view.show_layer("film", False)
+    settle()
+    assert view.grab().toImage().pixelColor(5, 225).red() < 100
+    view.show_layer("ground", True)
+    view.look("orbit")
+    assert shadow.GetVisibility()
+
+
+def test_the_background_mesh_is_seen_and_never_cut_off(view: Viewport) -> None:
+    """A far wall behind the ball is drawn in its own colour, and gone when its layer is off."""
+    eye = view.lens().camera
+    middle = np.array([0, 0, 1.0]) + 14 * eye.R[2]
+    wall = middle + np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) @ np.array([30 * eye.R[0], 30 * eye.R[1]])
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    view.scene.set_background(wall, faces, np.tile(np.array([10, 200, 30], np.uint8), (4, 1)))
+    view.show_layer("background", True)
+    settle()
+    seen = view.grab().toImage().pixelColor(40, 60)
+    assert seen.green() > 150
+    assert seen.red() < 60
+    view.show_layer("background", False)
+    settle()
+    assert view.grab().toImage().pixelColor(40, 60).green() < 100
+
+
+def test_a_mesh_painted_for_now_gets_its_own_colours_back(view: Viewport) -> None:
+    """Red while it is painted, clay as before afterwards."""
+    before = view.grab().toImage().pixelColor(300, 225)
+    view.paint(np.tile(np.array([230, 20, 20], np.uint8), (len(view.vertices), 1)))
+    settle()
+    painted = view.grab().toImage().pixelColor(300, 225)
+    assert painted.red() > 3 * painted.green()
+    view.paint(None)
+    settle(400)
+    after = view.grab().toImage().pixelColor(300, 225)
+    assert abs(after.green() - before.green()) < 12

@@ -182,7 +182,7 @@ class MeshView(Panel):
 
     def _show_scene(self, on: bool) -> None:
         if self.viewport is not None:
-            self.viewport.show_surroundings(on)
+            [self.viewport.show_layer(name, on) for name in ("points", "path", "ground")]
 
     def _over(self) -> None:
         if self.viewport is not None:

@@ -29,6 +29,8 @@ class Scene:
         self.plotter = plotter
         self._mesh: pv.PolyData | None = None
         self._shadow: pv.PolyData | None = None
+        self._far: Array | None = None
+        self._own: NDArray[np.uint8] = np.zeros((0, 3), np.uint8)
         self._ground_height = 0.0
         self._closed = False
         self._actors: dict[str, Any] = {}
@@ -63,6 +65,7 @@ class Scene:
         paint = np.tile(np.array(CLAY, np.uint8), (mesh.n_points, 1)) if colours is None else colours
         mesh.point_data["colour"] = np.ascontiguousarray(paint[:, :3], np.uint8)
         mesh.set_active_scalars("colour")
+        self._own = np.array(mesh.point_data["colour"])
         normals = vtkPolyDataNormals()
         normals.SetInputData(mesh)
         for switch in (normals.SplittingOff, normals.ConsistencyOff, normals.AutoOrientNormalsOff):
@@ -110,11 +113,11 @@ class Scene:
             if name in self._actors:
                 self._actors[name].GetProperty().SetBackfaceCulling(wanted and self._closed)
 
-    def paint_mesh(self, colours: NDArray[np.uint8]) -> None:
-        """Give the vertices other colours (v, 3)."""
+    def paint_mesh(self, colours: NDArray[np.uint8] | None) -> None:
+        """Give the vertices other colours (v, 3), or their own again."""
         if self._mesh is None:
             return
-        self._mesh.point_data["colour"][:] = colours
+        self._mesh.point_data["colour"][:] = self._own if colours is None else colours
         self._mesh.GetPointData().GetScalars().Modified()
         self._mesh.Modified()
 
@@ -160,6 +163,25 @@ class Scene:
         if len(places) > 1:
             line = pv.lines_from_points(places)
             self._add("path", line, color="#C39BFF", line_width=2, lighting=False)
+
+    def set_background(self, vertices: ArrayLike, faces: ArrayLike, colours: NDArray[np.uint8]) -> None:
+        """Show the measured background: a mesh (n, 3), (m, 3) with colours (n, 3)."""
+        places = np.asarray(vertices, np.float32).reshape(-1, 3)
+        self._remove("background")
+        self._far = None
+        if len(places):
+            corners = np.asarray(faces, np.int64).reshape(-1, 3)
+            mesh = pv.PolyData(places, np.column_stack([np.full(len(corners), 3), corners]).ravel())
+            mesh.point_data["colour"] = np.ascontiguousarray(colours[:, :3], np.uint8)
+            self._add("background", mesh, scalars="colour", rgb=True, lighting=False)
+            self._far = np.array([places.min(0), places.max(0)], np.float64)
+
+    @property
+    def seen_extent(self) -> Array:
+        """Least and largest corner (2, 3) of the mesh and of what is shown of its background."""
+        if self._far is None or not self._shown.get("background", True):
+            return self.extent
+        return np.array([np.minimum(self.extent[0], self._far[0]), np.maximum(self.extent[1], self._far[1])])
 
     def show(self, name: str, shown: bool) -> None:
         """Show or hide mesh, shadow, ground, points or path; holds for what comes later under that name too."""

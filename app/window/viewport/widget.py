@@ -17,6 +17,7 @@ from app.window.viewport.gizmo import Gizmo, GizmoDrag
 from app.window.viewport.gizmo_paint import paint_gizmo
 from app.window.viewport.handles import Handle, paint_handles
 from app.window.viewport.hosts import Choice, choose, make_host
+from app.window.viewport.layers import IN_SCENE, Layers
 from app.window.viewport.lens import Lens, clipped, framed
 from app.window.viewport.mouse import Mouse
 from app.window.viewport.orbit import Orbit, around, beside, facing
@@ -68,11 +69,12 @@ class Viewport(QWidget):
         self.camera: Camera | None = None
         self.picture: QImage | None = None
         self.mesh_opacity = 1.0
-        self.surroundings = True
+        self.layers = Layers()
         self.view = View()
         self._fit = True
         self.vertices: NDArray[np.float64] = np.zeros((0, 3))
         self.faces: NDArray[np.int32] = np.zeros((0, 3), np.int32)
+        self._painted = False
         self.handles: tuple[Handle, ...] = ()
         self.notes: Sequence[Callable[[QPainter, Lens], None]] = ()
         self.calm: Callable[[], bool] = lambda: True
@@ -96,9 +98,16 @@ class Viewport(QWidget):
         self, vertices: NDArray[np.float64], faces: NDArray[np.int32], colours: NDArray[np.uint8] | None
     ) -> None:
         """Show another mesh."""
-        self.vertices, self.faces = np.asarray(vertices, np.float64), faces
+        self.vertices, self.faces, self._painted = np.asarray(vertices, np.float64), faces, False
         self.scene.set_mesh(vertices, faces, colours)
         self.redraw()
+
+    def paint(self, colours: NDArray[np.uint8] | None) -> None:
+        """Give the vertices (v, 3) other colours for now; None gives them their own again."""
+        if colours is not None or self._painted:
+            self._painted = colours is not None
+            self.scene.paint_mesh(colours)
+            self.redraw()
 
     def move_mesh(self, vertices: NDArray[np.float64]) -> None:
         """Bring the mesh to other places."""
@@ -130,8 +139,11 @@ class Viewport(QWidget):
 
     def show_camera(self, camera: Camera | None, picture: QImage | None) -> None:
         """Take the frame's camera and its picture."""
+        before = self.through_camera
         self.camera, self.picture = camera, picture
-        if self.looking == "camera":
+        if self.through_camera != before:
+            self.show_layers()
+        elif self.looking == "camera":
             self.redraw()
 
     def look(self, looking: Looking) -> None:
@@ -140,15 +152,27 @@ class Viewport(QWidget):
         if looking == "side" and self.camera is not None:
             middle = self.vertices.mean(0) if len(self.vertices) else np.zeros(3)
             self.orbit = beside(self.camera, middle, around(self._subject(), self.orbit, aspect=self._aspect()))
-        self.show_surroundings(self.surroundings)
+        self.show_layers()
 
-    def show_surroundings(self, on: bool) -> None:
-        """Show or hide ground, background points and the camera's path; over the video they are never drawn."""
-        self.surroundings = on
-        for name in ("points", "path", "ground"):
-            self.scene.show(name, on and not self.through_camera)
-        self.scene.show("shadow", not self.through_camera)
+    def shows(self, name: str) -> bool:
+        """Whether a layer is on in the present look."""
+        return self.layers.on(name, over_film=self.through_camera)
+
+    def show_layer(self, name: str, on: bool) -> None:
+        """Show or hide a layer, from now on whenever one looks about in space, or over the film."""
+        self.layers.switch(name, on, over_film=self.through_camera)
+        self.show_layers()
+
+    def show_layers(self) -> None:
+        """Show the layers of the present look."""
+        for name in IN_SCENE:
+            self.scene.show(name, self.shows(name))
         self.redraw()
+
+    def look_like(self, other: Viewport) -> None:
+        """Look from where another view looks."""
+        self.looking, self.orbit, self.view, self._fit = other.looking, other.orbit, other.view, other._fit
+        self.show_layers()
 
     def orbit_from(self, camera: Camera) -> None:
         """Orbit from about the side that the recovered camera is on, and show everything."""
@@ -183,10 +207,10 @@ class Viewport(QWidget):
             camera = framed(self.camera, self.view)
         else:
             camera = self.orbit.camera(size)
-        return clipped(camera, size, np.concatenate([self.scene.extent, self._corners()]))
+        return clipped(camera, size, np.concatenate([self.scene.seen_extent, self._corners()]))
 
     def _corners(self) -> NDArray[np.float64]:
-        low, high = self.scene.extent
+        low, high = self.scene.seen_extent
         grid = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
         return np.asarray(grid, np.float64)
 
@@ -198,8 +222,9 @@ class Viewport(QWidget):
 
     def _draw(self, *, fine: bool) -> None:
         lens = self.lens()
-        behind = self.picture if self.through_camera else None
-        self.host.background.show(behind, self.view, mesh_opacity=self.mesh_opacity if behind is not None else 1.0)
+        behind = self.picture if self.through_camera and self.shows("film") else None
+        opacity = self.mesh_opacity if self.through_camera else 1.0
+        self.host.background.show(behind, self.view, mesh_opacity=opacity)
         self.host.draw(lens, fine=fine)
         self._dirty = False
 
