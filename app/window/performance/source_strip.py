@@ -21,9 +21,12 @@ LEGEND = "★ kept in the database"
 
 
 class SourceStrip(Panel):
-    """Follows the shared state. ``matrix_wanted`` asks to show or hide the self-similarity matrix."""
+    """Follows the shared state. ``matrix_wanted`` asks to show or hide the self-similarity matrix, ``refreshed`` says
+    that the strip may look different now.
+    """
 
     matrix_wanted = Signal(bool)
+    refreshed = Signal()
 
     def __init__(self, state: PerformanceState) -> None:
         super().__init__("Source", " ", header_height=34)
@@ -85,6 +88,7 @@ class SourceStrip(Panel):
         self.empty.setText(self._why_empty(sequence))
         self._caption(kept[1] if kept is not None else None, structure is None)
         self._move()
+        self.refreshed.emit()
 
     def _why_empty(self, sequence: CapturedSequence | None) -> str:
         project = self.state.project
