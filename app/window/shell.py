@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QImage
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QImage, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from app.actions.session import Session
@@ -30,6 +30,8 @@ from app.window.welcome import Welcome
 from app.window.workspaces import Pages, Workspace, first_workspace
 
 AUTOSAVE = 60_000
+LOW = 800
+"""Pixels of height below which the lanes are one line each."""
 
 
 class Shell(QMainWindow):
@@ -71,6 +73,7 @@ class Shell(QMainWindow):
 
     def _build(self) -> None:
         self.split = Split(self.pages, self.timeline)
+        self.split.chosen.connect(self._fit_lanes)
         body = QWidget()
         body.setObjectName("body")
         inner = QHBoxLayout(body)
@@ -160,6 +163,7 @@ class Shell(QMainWindow):
     def show_workspace(self, name: str) -> None:
         """Show a workspace, or the welcome where there is no clip yet."""
         self.bar.show_workspace(name)
+        self.split.workspace = name
         self.pages.choose(name, self.project.document if self.project is not None else None)
         self.timeline.setVisible(not self.pages.welcoming and not self.in_sight().own_timeline)
         if self._picture is not None:
@@ -193,7 +197,17 @@ class Shell(QMainWindow):
         if project is None:
             return
         self.timeline.show_lanes(self.in_sight().lanes(), self.in_sight().legend())
+        self._fit_lanes()
+
+    def _fit_lanes(self) -> None:
+        """Give the lanes their room; in a low window one line each, unless the user has given them more."""
+        self.timeline.lanes.show_compact(self.height() < LOW and self.split.by_hand is None)
         self.split.fit(self.timeline.wanted_height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fit the lanes to the new height."""
+        super().resizeEvent(event)
+        self._fit_lanes()
 
     def _show_frame(self, frame: int) -> None:
         self.timeline.show_frame(frame)

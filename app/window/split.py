@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtWidgets import QSplitter, QWidget
+
+from app.window import settings
 
 GAP = 8
 
 
 class Split(QSplitter):
-    """The two halves of the window."""
+    """The two halves of the window; a height chosen by hand is kept for each workspace, from one run to the next.
+
+    A double click on the line between them takes the automatic height again.
+    """
+
+    chosen = Signal()
 
     def __init__(self, above: QWidget, below: QWidget) -> None:
         super().__init__(Qt.Orientation.Vertical)
@@ -19,15 +26,36 @@ class Split(QSplitter):
         self.addWidget(below)
         self.setStretchFactor(0, 1)
         self.setStretchFactor(1, 0)
-        self._by_hand = False
+        self.workspace = ""
         self.splitterMoved.connect(self._moved)
+        handle = self.handle(1)
+        handle.setToolTip("Drag to give the lanes more or less room; a double click fits them")
+        handle.installEventFilter(self)
+
+    @property
+    def by_hand(self) -> int | None:
+        """Pixels that the user has given the lower half in this workspace, None where nothing was chosen."""
+        value = settings.settings().value(f"split/{self.workspace}")
+        try:
+            return int(str(value))
+        except ValueError:
+            return None
 
     def _moved(self) -> None:
-        self._by_hand = True
+        settings.settings().setValue(f"split/{self.workspace}", self.sizes()[1])
+        self.chosen.emit()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Forget what was chosen by hand when the line is clicked twice."""
+        if event.type() == QEvent.Type.MouseButtonDblClick:
+            settings.settings().remove(f"split/{self.workspace}")
+            self.chosen.emit()
+            return True
+        return super().eventFilter(watched, event)
 
     def fit(self, wanted: int) -> None:
-        """Give the lower half the pixels it wants, up to two fifths."""
-        height = self.height()
-        wanted = min(wanted, 2 * height // 5)
-        if not self._by_hand and height > 0 and abs(self.sizes()[1] - wanted) > 1:
+        """Give the lower half the pixels chosen by hand, or those it wants, up to two fifths."""
+        height, chosen = self.height(), self.by_hand
+        wanted = min(wanted, 2 * height // 5) if chosen is None else min(chosen, height - GAP)
+        if height > 0 and abs(self.sizes()[1] - wanted) > 1:
             self.setSizes([height - wanted - GAP, wanted])

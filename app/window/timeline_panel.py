@@ -37,7 +37,7 @@ class TimelinePanel(Panel):
         area.setWidget(self.lanes)
         self.column.addWidget(self.transport)
         self.column.addWidget(area, 1)
-        self.setMinimumHeight(140)
+        self.setMinimumHeight(120)
         self.lanes.sought.connect(self._seek)
         self.lanes.clicked.connect(self._clicked)
         self.lanes.edited.connect(self._edited)

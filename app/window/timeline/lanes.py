@@ -62,6 +62,7 @@ class Lane:
     """A titled group of rows, a row of thumbnails, or a curve.
 
     edits : what the mouse may change in it: "retime" its diamonds, "paint" runs, "trim" their ends.
+    compact : it is one line, no higher than its row.
     """
 
     id: str
@@ -74,6 +75,7 @@ class Lane:
     curve: Curve | None = None
     padding: int = 6
     edits: tuple[str, ...] = ()
+    compact: bool = False
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ def layout(lanes: Sequence[Lane], scrolled: dict[str, int] | None = None) -> tup
             y += lane.row_height
         if shown and lane.row_height < LOW and not lane.thumbnails and not any(row.selected for row in shown):
             y += TALLER
-        bottom = max(y + lane.padding, top + 26)
+        bottom = max(y + lane.padding, top + (lane.row_height + 2 if lane.compact else 26))
         if shown and not lane.thumbnails:
             last = rows[-1][1] + rows[-1][2]
             spare = (bottom - lane.padding - last) // 2

@@ -13,6 +13,7 @@ from app.window.timeline import paint
 from app.window.timeline.axis import LABELS, Axis
 from app.window.timeline.drags import LaneDrag, LaneEdit, drag_from
 from app.window.timeline.lanes import RULER, Lane, Placed, TimelineHit, hit, layout, total_height
+from app.window.timeline.summary import summaries
 
 HAND, SIDEWAYS = Qt.CursorShape.PointingHandCursor, Qt.CursorShape.SizeHorCursor
 CURSORS = {"diamond": HAND, "label": HAND, "first": SIDEWAYS, "last": SIDEWAYS, "in": SIDEWAYS, "out": SIDEWAYS}
@@ -39,6 +40,7 @@ class LaneView(QWidget):
         self.lanes: tuple[Lane, ...] = ()
         self.placed: tuple[Placed, ...] = ()
         self.thumbnail: paint.Thumbnail | None = None
+        self.compact = False
         self._scrolled: dict[str, int] = {}
         self._still: QPixmap | None = None
         self._seeking = False
@@ -58,8 +60,14 @@ class LaneView(QWidget):
         self.axis = self.axis.sized(self.width(), count)
         self._place()
 
+    def show_compact(self, on: bool) -> None:
+        """Show every lane in one line, or in full."""
+        if on != self.compact:
+            self.compact = on
+            self._place()
+
     def _place(self) -> None:
-        self.placed = layout(self.lanes, self._scrolled)
+        self.placed = layout(summaries(self.lanes)) if self.compact else layout(self.lanes, self._scrolled)
         if total_height(self.placed) != self.minimumHeight():
             self.setMinimumHeight(total_height(self.placed))
             self.updateGeometry()
