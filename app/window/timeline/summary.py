@@ -22,7 +22,7 @@ def summaries(lanes: Sequence[Lane]) -> list[Lane]:
 
 
 def _summary(lane: Lane) -> Lane:
-    bars = [bar for row in lane.rows for bar in row.bars]
+    bars = [_neutral(bar) for row in lane.rows for bar in row.bars]
     marks = {mark.frame: mark for row in lane.rows for mark in row.diamonds}
     if lane.curve is not None:
         bars += _too_high(lane.curve)
@@ -31,6 +31,11 @@ def _summary(lane: Lane) -> Lane:
     row = Row(next((row.id for row in lane.rows if row.selected), ""), tuple(bars), tuple(marks.values()))
     line = replace(lane, rows=(row,), row_height=LINE, shown_rows=1, padding=0, compact=True)
     return replace(line, thumbnails=False, curve=None, edits=())
+
+
+def _neutral(bar: Bar) -> Bar:
+    """Take a row's own colour away: where rows lie over each other it would say that one of them is meant."""
+    return replace(bar, colour="text3") if bar.colour.startswith("#") else bar
 
 
 def _too_high(curve: Curve) -> list[Bar]:
