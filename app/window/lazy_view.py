@@ -57,6 +57,8 @@ class LazyView(QWidget):
         return self.viewport
 
     def _make(self) -> None:
+        if self.viewport is not None or self._finished:
+            return
         self.viewport = Viewport(self.choice)
         self.waiting.hide()
         self._inner.addWidget(self.viewport)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QFont, QHelpEvent, QImage, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
+from PySide6.QtGui import QColor, QFont, QHelpEvent, QImage, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app.window import fonts, theme
 from app.window.canvas import marks
 from app.window.performance.strip import BoundaryDrag, Strip, drag_of
 
+UNDER = QColor(13, 15, 18, 110)
 EDGE, MARGIN, GRAB = 12.0, 10.0, 5.0
 MARK, HELD = "#FFFFFF", "#FFA94D"
 """Boundaries are drawn over the matrix's own colours, whatever the look."""
@@ -252,7 +253,7 @@ class MatrixView(QWidget):
 
     def _lines(self, painter: QPainter, seen: Window, frame: float, pen: QPen) -> None:
         x, y = seen.place(frame, 0), seen.place(frame, 1)
-        for each in (QPen(marks.UNDERLAY, pen.widthF() + 2), pen):
+        for each in (QPen(UNDER, pen.widthF() + 1.6), pen):
             painter.setPen(each)
             painter.drawLine(QPointF(x, seen.top - EDGE), QPointF(x, seen.box.bottom()))
             painter.drawLine(QPointF(seen.left - EDGE, y), QPointF(seen.box.right(), y))
