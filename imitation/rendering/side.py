@@ -90,6 +90,7 @@ def side_view(
     samples: int = 3,
     up: ArrayLike = UP,
     turn: float = np.pi / 2,
+    shown: Sequence[int] | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Picture]:
     """Draw a moving character from the side over a grid on the ground, one picture after the other.
@@ -102,6 +103,7 @@ def side_view(
     footing : what receives the shadow in each frame, where that is not the plane of the grid (stairs).
     points : (p, 3) background points to show, world.
     turn : how far the view is turned about ``up``, radians.
+    shown : the frames to draw, all where not given; the view follows the whole motion all the same.
     """
     if not len(vertices) or len(vertices) != len(cameras):
         raise InputError(f"There are {len(vertices)} poses and {len(cameras)} cameras: give one camera for each pose.")
@@ -113,14 +115,16 @@ def side_view(
     cloud = None if points is None else np.asarray(points, np.float64).reshape(-1, 3)
     with Renderer(faces, size, colors=colors, look=look, samples=samples, up=above) as renderer:
         report(0.0)
-        for t, view in enumerate(views):
+        drawn = range(len(views)) if shown is None else shown
+        for done, t in enumerate(drawn, start=1):
+            view = views[t]
             pose = np.ascontiguousarray(vertices[t], np.float64)
             reach = float(np.linalg.norm(np.ptp(pose, axis=0)))
             back = grid(studio(size), view, ground, step=_nice(reach / 4), reach=3.0 * reach, centre=pose.mean(axis=0))
             if cloud is not None:
                 back = _dots(back, view, cloud)
             yield over_frame(renderer, pose, view, back, ground if footing is None else footing[t])
-            report((t + 1) / len(views))
+            report(done / len(drawn))
 
 
 def grid(
