@@ -12,8 +12,9 @@ from app.window.timeline.lanes import RULER
 if TYPE_CHECKING:
     from app.window.performance.state import PerformanceState
 
-COMPOSED, COSTS, LOW = 64, 44, 34
-"""Heights of the two lanes, and of the first where room is scarce."""
+COMPOSED, COSTS = 64, 44
+LOW, LOW_COSTS = 42, 30
+"""Heights of the two lanes, and where room is scarce."""
 BUTTON = 18.0
 NEAR = 6.0
 

@@ -49,8 +49,9 @@ def paint_blocks(
         if block.gap:
             _paint_gap(painter, room)
         else:
-            _paint_block(painter, block, room, thumbnail, block.key == chosen >= 0, index == hovered)
-            if repeatable(block, axis):
+            picked = block.key == chosen >= 0
+            _paint_block(painter, block, room, thumbnail, picked, index == hovered)
+            if (picked or index == hovered) and repeatable(block, axis):
                 _paint_repeats(painter, block, room)
     _paint_wraps(painter, shown, axis, height)
     painter.restore()
@@ -75,37 +76,41 @@ def _paint_block(
         numbers = tuple(key + 1 for key in block.keys)
         paint_badge(painter, min(left + 10, room.center().x()), room.top() + min(16, room.height() / 2), numbers)
         left += 27 + 16 * (len(numbers) - 1)
-    right = _paint_pictures(painter, block, room, thumbnail)
-    if right - left < 18:
-        return
     low = room.height() < 44
     face = fonts.font(fonts.CAPTION, QFont.Weight.DemiBold)
+    times = f"  \N{MULTIPLICATION SIGN}{block.repeats}" if block.repeats > 1 else ""
+    caption = f"{block.count} frames{times}"
+    small = fonts.font(fonts.LANE)
+    wide = QFontMetricsF(small).horizontalAdvance(caption)
+    needed = max(QFontMetricsF(face).horizontalAdvance(block.name), wide)
+    right = _paint_pictures(painter, block, room, left + needed + 8, thumbnail)
+    if right - left < 18:
+        return
     name = QFontMetricsF(face).elidedText(block.name, Qt.TextElideMode.ElideRight, right - left)
     painter.setFont(face)
     painter.setPen(look.colour("text"))
     painter.drawText(QRectF(left, room.top() + (3 if low else 6), right - left, 20), LEFT, name)
-    if not low and right - left >= 60:
-        painter.setFont(fonts.font(fonts.LANE))
+    covered = (chosen or hovered) and block.keys and block.cyclic and left + wide > room.right() - 3 * BUTTON - 14
+    if not low and right - left >= wide and not covered:
+        painter.setFont(small)
         painter.setPen(look.colour("text2"))
-        painter.drawText(QRectF(left, room.top() + 25, right - left, 18), LEFT, f"{block.count} frames")
+        painter.drawText(QRectF(left, room.top() + 25, right - left, 18), LEFT, caption)
 
 
-def _paint_pictures(painter: QPainter, block: Block, room: QRectF, thumbnail: Thumbnail) -> float:
-    """The first pose, and the last one fainter at the end where there is room; gives where text has to end."""
+def _paint_pictures(painter: QPainter, block: Block, room: QRectF, begin: float, thumbnail: Thumbnail) -> float:
+    """The first pose after the words, the last one fainter at the end where there is room; gives where words end."""
     size = room.height() - 4
-    if room.width() < 92 + size or size < 30:
+    ends = room.right() - size - 4
+    if begin > ends + 12 or size < 30:
         return room.right() - 6
     sequence, first, last = block.picture
-    places = (
-        [(room.left() + 116, first, 1.0)] if room.width() >= 124 + size else [(room.right() - size - 4, first, 1.0)]
-    )
-    ends = room.right() - size - 4
+    places = [(min(begin, ends), first, 1.0)]
     if ends - places[0][0] > size + 34:
         places.append((ends, last, 0.45))
         look = theme.active()
-        middle, begin = room.center().y(), places[0][0] + size + 6
+        middle = room.center().y()
         painter.setPen(QPen(look.colour("text3"), 1))
-        painter.drawLine(QPointF(begin, middle), QPointF(ends - 6, middle))
+        painter.drawLine(QPointF(places[0][0] + size + 6, middle), QPointF(ends - 6, middle))
         for side in (-4, 4):
             painter.drawLine(QPointF(ends - 6, middle), QPointF(ends - 11, middle + side))
     painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
@@ -138,11 +143,12 @@ def _paint_repeats(painter: QPainter, block: Block, room: QRectF) -> None:
 
 def _paint_wraps(painter: QPainter, shown: Composed, axis: Axis, height: int) -> None:
     """Where a repeated motion begins anew."""
-    painter.setPen(QPen(theme.active().colour("text", 110), 1, Qt.PenStyle.DotLine))
+    painter.setPen(QPen(theme.active().colour("text", 150), 1.4))
     for joint in shown.joints:
         if joint.kind == "wrap":
             x = axis.x(joint.position)
-            painter.drawLine(QPointF(x, RULER + 6), QPointF(x, RULER + height - 6))
+            for top in (RULER + 4, RULER + height - 13):
+                painter.drawLine(QPointF(x, top), QPointF(x, top + 9))
 
 
 def paint_costs(painter: QPainter, shown: Composed, axis: Axis, top: int, height: int, *, chosen: int) -> None:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, QTimer, Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QMenu
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QMenu, QSizePolicy
 
 from app.window import theme
-from app.window.controls import Elided, Panel, button, label
-from app.window.performance.blocks import COMPOSED, Block, ComposedHit, composed
+from app.window.controls import Elided, Panel, button, label, toggle
+from app.window.performance.blocks import Block, ComposedHit, composed
 from app.window.performance.composed_view import ComposedView
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.options_bar import OptionsBar
@@ -56,6 +56,7 @@ class ComposedPanel(Panel):
     """Shows what is composed, and hands on what the hands do."""
 
     wanted = Signal(str)
+    source_wanted = Signal(bool)
 
     def __init__(self, state: PerformanceState, editing: PerformanceEditing, thumbnails: Thumbnails) -> None:
         super().__init__()
@@ -69,12 +70,16 @@ class ComposedPanel(Panel):
         row = self.transport.layout()
         assert isinstance(row, QHBoxLayout)
         row.insertWidget(row.indexOf(self.transport.legend), self.summary, 1)
+        self.source = toggle("layers", "Source", self.source_wanted.emit, on=True)
+        self.source.setToolTip("Show the chosen sequence and its motions below")
+        row.addWidget(self.source)
         self.options = OptionsBar(state, editing)
         self.view = ComposedView()
         self.view.thumbnail = lambda sequence, frame: thumbnails.picture(sequence, frame)
         self.column.addWidget(self.transport)
         self.column.addWidget(self.options)
         self.column.addWidget(self.view)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.note = GapNote(editing)
         self.note.setParent(self.view)
         self.empty = label(EMPTY, "caption")
@@ -152,7 +157,8 @@ class ComposedPanel(Panel):
         """Put what lies over the lanes where it belongs."""
         self.empty.setVisible(not self.view.shown.blocks)
         self.empty.setText(EMPTY if not self.state.document.performance.keys else self._words())
-        self.empty.setGeometry(LABELS, RULER, max(self.view.width() - LABELS, 10), COMPOSED)
+        height = self.view.heights[0]
+        self.empty.setGeometry(LABELS, RULER, max(self.view.width() - LABELS, 10), height)
         room = self.view.gap_room()
         gap = self.state.gap
         self.note.setVisible(room is not None and gap is not None)
@@ -162,7 +168,7 @@ class ComposedPanel(Panel):
             left, right = max(room[0] + 8, LABELS + 4), min(room[1] - 8, self.view.width() - 4)
             wide = max(right - left, 330)
             left = max(min(left, self.view.width() - 4 - wide), LABELS + 4)
-            self.note.setGeometry(round(left), RULER + 9, round(wide), COMPOSED - 18)
+            self.note.setGeometry(round(left), RULER + 5, round(wide), height - 10)
 
     def _choose_key(self, key: int) -> None:
         self.editing.choose(key)

@@ -20,7 +20,17 @@ from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app.window import theme
 from app.window.performance import blocks, composed_paint
-from app.window.performance.blocks import COMPOSED, COSTS, Composed, ComposedHit, found_at, key_place, place_x
+from app.window.performance.blocks import (
+    COMPOSED,
+    COSTS,
+    LOW,
+    LOW_COSTS,
+    Composed,
+    ComposedHit,
+    found_at,
+    key_place,
+    place_x,
+)
 from app.window.timeline.axis import Axis
 from app.window.timeline.lanes import RULER
 from app.window.timeline.paint import paint_playhead, paint_ruler
@@ -60,12 +70,21 @@ class ComposedView(QWidget):
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.heights = (COMPOSED, COSTS)
         self.setFixedHeight(RULER + COMPOSED + COSTS)
         self.setAccessibleName("Composed performance")
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
-        return QSize(800, RULER + COMPOSED + COSTS)
+        return QSize(800, RULER + sum(self.heights))
+
+    def show_low(self, low: bool) -> None:
+        """Show lower lanes, where the window is low."""
+        heights = (LOW, LOW_COSTS) if low else (COMPOSED, COSTS)
+        if heights != self.heights:
+            self.heights = heights
+            self.setFixedHeight(RULER + sum(heights))
+            self.refresh()
 
     # showing -----------------------------------------------------------------------------------------------------
 
@@ -143,7 +162,7 @@ class ComposedView(QWidget):
         painter.drawPixmap(0, 0, self._still)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if self.insertion >= 0:
-            composed_paint.paint_insertion(painter, place_x(self.shown, self.axis, self.insertion), COMPOSED)
+            composed_paint.paint_insertion(painter, place_x(self.shown, self.axis, self.insertion), self.heights[0])
         if self.shown.count > 1 and not any(block.gap for block in self.shown.blocks):
             paint_playhead(painter, self.axis, self.position, self.height())
         painter.end()
@@ -156,16 +175,17 @@ class ComposedView(QWidget):
         if self.shown.count:
             paint_ruler(painter, self.axis)
         composed_paint.paint_blocks(
-            painter, self.shown, self.axis, COMPOSED, self.thumbnail, chosen=self.key, hovered=self.hover
+            painter, self.shown, self.axis, self.heights[0], self.thumbnail, chosen=self.key, hovered=self.hover
         )
-        composed_paint.paint_costs(painter, self.shown, self.axis, RULER + COMPOSED, COSTS, chosen=self.cut)
-        composed_paint.paint_labels(painter, self.width(), (COMPOSED, COSTS))
+        top, height = RULER + self.heights[0], self.heights[1]
+        composed_paint.paint_costs(painter, self.shown, self.axis, top, height, chosen=self.cut)
+        composed_paint.paint_labels(painter, self.width(), self.heights)
         painter.end()
 
     # mouse -------------------------------------------------------------------------------------------------------
 
     def _find(self, x: float, y: float) -> ComposedHit:
-        return found_at(self.shown, self.axis, x, y)
+        return found_at(self.shown, self.axis, x, y, self.heights[0])
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Seek, choose what was hit, or take hold of a key motion."""

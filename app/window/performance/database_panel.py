@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QSlider, QVBoxLayout, QWid
 
 from app.model.edits import performance as edits
 from app.window.controls import NumberField, NumberRange, Row, label
+from app.window.performance.section import Section
 from app.window.performance.state import PerformanceState
 from app.window.performance.trial import Trial
 
@@ -41,8 +42,13 @@ class DatabasePanel(QWidget):
         self.features_method = self._chooser("features")
         self.graph_method.setToolTip("How transitions are found and pruned: robust, or equations 9 to 14 as printed")
         self.features_method.setToolTip("How frames are compared: robust, or equations 1 to 5 as printed")
-        column.addWidget(Row("Transitions", self.graph_method))
-        column.addWidget(Row("Distances", self.features_method))
+        methods = QWidget()
+        rows = QVBoxLayout(methods)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(6)
+        rows.addWidget(Row("Transitions", self.graph_method))
+        rows.addWidget(Row("Distances", self.features_method))
+        column.addWidget(Section("Methods", methods))
         state.results_changed.connect(self.refresh)
         state.document_changed.connect(self.refresh)
         trial.changed.connect(self.refresh)

@@ -149,7 +149,7 @@ class GraphCanvas(QWidget):
         paint.paint_groups(painter, self.picture.groups, self.lens)
         paint.paint_edges(painter, self.picture, self.lens, self.node)
         for mark in self.picture.nodes:
-            image = self.thumbnail(mark.node, 0) if self.lens.scale >= paint.PICTURED else None
+            image = self.thumbnail(mark.node, 0) if self.lens.size >= paint.PICTURED else None
             self._paint_mark(painter, mark, image)
         paint.paint_costs(painter, self.picture, self.lens)
         painter.end()
@@ -207,7 +207,7 @@ class GraphCanvas(QWidget):
         if self.rect().contains(place.toPoint()):
             dx, dy = place.x() - self._pressed.x(), place.y() - self._pressed.y()
             self.moved.emit(
-                self._grabbed, self._origin[0] + dx / self.lens.scale, self._origin[1] + dy / self.lens.scale
+                self._grabbed, self._origin[0] + dx / self.lens.across, self._origin[1] + dy / self.lens.down
             )
             self.setCursor(Qt.CursorShape.ClosedHandCursor)
         else:

@@ -10,10 +10,10 @@ from app.window import fonts, theme
 from app.window.performance.state import PerformanceState
 
 LINES = (
+    ("key motion", "edit", "disc"),
     ("best path", "accent", "line"),
-    ("other transition", "line2", "line"),
+    ("other", "line2", "line"),
     ("over the limit", "line2", "dash"),
-    ("key motion, in order", "edit", "disc"),
 )
 
 

@@ -37,7 +37,7 @@ def paint_groups(painter: QPainter, groups: tuple[GroupMark, ...], lens: Lens) -
     for group in groups:
         colour = theme.active().colour(group.colour)
         x, y = lens.pixel(group.x, group.y)
-        wide, high = group.wide * lens.scale, group.high * lens.scale
+        wide, high = group.wide * lens.size, group.high * lens.size
         painter.setPen(QPen(_faded(colour, 90), 1))
         painter.setBrush(_faded(colour, 18))
         painter.drawEllipse(QPointF(x, y), wide, high)
@@ -68,7 +68,7 @@ def _paint_edge(
     else:
         colour = look.colour("text2" if near else "line2", 60 if dim or not whole else 230 if near else 150)
         width = 1.0 + 1.6 * edge.strength
-    gap = lens.scale / 2 + (3.5 if edge.kind == "path" else 2.0)
+    gap = lens.size / 2 + (3.5 if edge.kind == "path" else 2.0)
     begin, middle, end = bow(lens.pixel(start.x, start.y), lens.pixel(goal.x, goal.y), gap)
     path = QPainterPath(QPointF(*begin))
     path.quadTo(QPointF(*middle), QPointF(*end))
@@ -103,7 +103,7 @@ def paint_costs(painter: QPainter, picture: Picture, lens: Lens) -> None:
         if edge.kind != "path" or edge.start not in marks or edge.goal not in marks:
             continue
         start, goal = (lens.pixel(marks[node].x, marks[node].y) for node in (edge.start, edge.goal))
-        x, y = on_bow(*bow(start, goal, lens.scale / 2), 0.5)
+        x, y = on_bow(*bow(start, goal, lens.size / 2), 0.4)
         text = f"{edge.cost:.2f}"
         plate = QRectF(0, 0, metrics.horizontalAdvance(text) + 10, metrics.height() + 2)
         plate.moveCenter(QPointF(x, y))
@@ -120,13 +120,13 @@ def paint_node(
     """One motion: picture, ring, name, what is said about it."""
     look = theme.active()
     x, y = lens.pixel(mark.x, mark.y)
-    radius = lens.scale / 2
+    radius = lens.size / 2
     circle = QRectF(x - radius, y - radius, 2 * radius, 2 * radius)
     painter.setOpacity(0.3 if mark.dim and not (chosen or hovered) else 1.0)
     _paint_inside(painter, mark, circle, image)
     ring = look.colour(mark.colour)
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    painter.setPen(QPen(ring, 2.4 if lens.scale >= PICTURED else 1.6))
+    painter.setPen(QPen(ring, 2.4 if lens.size >= PICTURED else 1.6))
     painter.drawEllipse(circle)
     if mark.on_path or chosen:
         painter.setPen(QPen(look.colour("text" if chosen else "accent"), 2.4 if chosen else 2.0))
@@ -134,7 +134,7 @@ def paint_node(
     if chosen and focus:
         painter.setPen(QPen(look.colour("accent"), 2))
         painter.drawEllipse(circle.adjusted(-7, -7, 7, 7))
-    if lens.scale >= NAMED or chosen or hovered or mark.on_path:
+    if lens.size >= NAMED or chosen or hovered or mark.on_path:
         _paint_name(painter, mark, x, y + radius + (7 if mark.on_path or chosen else 4), chosen or hovered)
     if mark.badges:
         turned = radius * 0.74

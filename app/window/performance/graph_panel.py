@@ -108,13 +108,15 @@ class GraphPanel(Panel):
         self.filter.setPlaceholderText("Filter motions")
         self.filter.setClearButtonEnabled(True)
         self.filter.setAccessibleName("Filter motions by name")
-        self.filter.setFixedWidth(150)
+        self.filter.setMaximumWidth(150)
+        self.filter.setMinimumWidth(84)
         self.filter.textChanged.connect(lambda _: self.refresh())
         self.filter.returnPressed.connect(self._find)
         self.forbid = button("Forbid", lambda: self.editing.forbid(self.state.node), name="forbid")
         self.forbid.setToolTip("Never play the chosen motion, or allow it again  (X)")
         self.key = button("Key motion", lambda: self.editing.append(self.state.node), primary=True, name="key_motion")
         self.key.setToolTip("Add the chosen motion to the timeline  (Enter)")
+        self.header.title.setMinimumWidth(self.header.title.sizeHint().width())
         row = self.header.row
         for each in (self.filter, self.forbid, self.key):
             row.addWidget(each)

@@ -8,8 +8,12 @@ from dataclasses import dataclass, replace
 Place = tuple[float, float]
 SMALLEST, LARGEST = 14.0, 120.0
 """Pixels of a node's diameter."""
-FITTED = 78.0
+FITTED = 92.0
 """Pixels a node has at most where everything is shown."""
+WIDEST, STRETCH, SHARE = 150.0, 1.9, 1.2
+"""Pixels a node diameter of the layout has at most, how much more in one direction; what a node takes of the less."""
+NAME = (96.0, 44.0)
+"""Room for names and badges beside and below."""
 BEND = 0.16
 """How far an edge bows, as a share of its length, so that both directions can be told apart."""
 
@@ -70,25 +74,27 @@ class Picture:
 
 @dataclass(frozen=True)
 class Lens:
-    """Pixels from node diameters: ``x_pixel = x * scale + dx``."""
+    """Pixels from places: ``x_pixel = x * across + dx``; a node is ``size`` pixels wide."""
 
-    scale: float = FITTED
+    size: float = FITTED
+    across: float = FITTED
+    down: float = FITTED
     dx: float = 0.0
     dy: float = 0.0
 
     def pixel(self, x: float, y: float) -> Place:
         """Where a place is seen."""
-        return x * self.scale + self.dx, y * self.scale + self.dy
+        return x * self.across + self.dx, y * self.down + self.dy
 
     def place(self, x: float, y: float) -> Place:
         """What place is seen at a pixel."""
-        return (x - self.dx) / self.scale, (y - self.dy) / self.scale
+        return (x - self.dx) / self.across, (y - self.dy) / self.down
 
     def zoomed(self, factor: float, x: float, y: float) -> Lens:
         """Zoom so that what is at a pixel stays there."""
-        scale = min(max(self.scale * factor, SMALLEST), LARGEST)
-        share = scale / self.scale
-        return Lens(scale, x - (x - self.dx) * share, y - (y - self.dy) * share)
+        share = min(max(self.size * factor, SMALLEST), LARGEST) / self.size
+        dx, dy = x - (x - self.dx) * share, y - (y - self.dy) * share
+        return Lens(self.size * share, self.across * share, self.down * share, dx, dy)
 
     def moved(self, dx: float, dy: float) -> Lens:
         """Move by pixels."""
@@ -96,18 +102,23 @@ class Lens:
 
 
 def fitted(picture: Picture, width: float, height: float) -> Lens:
-    """The lens that shows everything, names included, in the middle."""
+    """The lens that shows everything, names included; it stretches the picture to the room there is, up to a degree."""
     if not picture.nodes:
-        return Lens(FITTED, width / 2, height / 2)
+        return Lens(dx=width / 2, dy=height / 2)
     xs, ys = [mark.x for mark in picture.nodes], [mark.y for mark in picture.nodes]
-    wide, high = max(xs) - min(xs) + 1.7, max(ys) - min(ys) + 1.9
-    scale = max(min(FITTED, width / wide, height / high), SMALLEST)
-    return Lens(scale, width / 2 - scale * (max(xs) + min(xs)) / 2, height / 2 - 8 - scale * (max(ys) + min(ys)) / 2)
+    wide, high = max(max(xs) - min(xs), 0.5), max(max(ys) - min(ys), 0.5)
+    size = min(FITTED, 0.3 * height)
+    across = min(max(width - size - NAME[0], 60.0) / wide, WIDEST)
+    down = min(max(height - size - NAME[1], 40.0) / high, WIDEST)
+    across, down = min(across, STRETCH * down), min(down, STRETCH * across)
+    size = max(min(size, SHARE * min(across, down)), SMALLEST)
+    dx = width / 2 - across * (max(xs) + min(xs)) / 2
+    return Lens(size, across, down, dx, (height - NAME[1] / 2) / 2 - down * (max(ys) + min(ys)) / 2)
 
 
 def node_at(picture: Picture, lens: Lens, x: float, y: float) -> NodeMark | None:
     """The node under a pixel; of several the one drawn last."""
-    radius = max(lens.scale / 2, 9.0)
+    radius = max(lens.size / 2, 9.0)
     for mark in reversed(picture.nodes):
         px, py = lens.pixel(mark.x, mark.y)
         if math.hypot(px - x, py - y) <= radius:
@@ -137,7 +148,7 @@ def edge_at(picture: Picture, lens: Lens, x: float, y: float, reach: float = 6.0
         if edge.kind == "faint" or edge.start not in marks or edge.goal not in marks:
             continue
         start, goal = (lens.pixel(marks[node].x, marks[node].y) for node in (edge.start, edge.goal))
-        curve = bow(start, goal, lens.scale / 2)
+        curve = bow(start, goal, lens.size / 2)
         if not _inside(curve, x, y, reach):
             continue
         near = min(math.dist(on_bow(*curve, step / 24), (x, y)) for step in range(25))

@@ -33,7 +33,7 @@ class OptionsBar(QWidget):
         self.paths = QComboBox()
         self.paths.setAccessibleName("Which path is taken")
         self.paths.setToolTip("The best path and the next best: the cost of the worst transition, and the length")
-        self.paths.setMinimumWidth(210)
+        self.paths.setFixedWidth(262)
         self.paths.activated.connect(self._take)
         row.addWidget(self.paths)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QPoint, Qt
-from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
+from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QSizePolicy, QSplitter, QVBoxLayout, QWidget
 
 from app.model.document import Document
 from app.window.background_call import BackgroundCalls
@@ -18,7 +19,9 @@ from app.window.performance.editing import PerformanceEditing
 from app.window.performance.graph_panel import HINT, GraphPanel
 from app.window.performance.graph_places import GraphPlaces
 from app.window.performance.library import Library
+from app.window.performance.matrix import Matrix, PreviewSide
 from app.window.performance.preview import Preview
+from app.window.performance.source_strip import SourceStrip
 from app.window.performance.state import PerformanceState
 from app.window.performance.thumbnails import Thumbnails
 from app.window.performance.time_commands import TimeCommands
@@ -26,6 +29,9 @@ from app.window.performance.trial import Trial
 from app.window.project import Project
 from app.window.viewport.hosts import Choice
 from app.window.workspaces import Workspace
+
+LOW = 690
+"""Pixels of height below which lanes are lower."""
 
 
 class PerformanceWorkspace(Workspace):
@@ -48,8 +54,17 @@ class PerformanceWorkspace(Workspace):
         self.graph = GraphPanel(self.state, self.editing, self.places, self.trial, self.thumbnails)
         self.preview = Preview(self.state, choice)
         self.composed = ComposedPanel(self.state, self.editing, self.thumbnails)
+        self.strip = SourceStrip(self.state)
+        self.matrix = Matrix(self.state, self.strip)
+        self.side = PreviewSide(self.preview, self.matrix, self.strip)
+        self.library.facts.azimuth = self.preview.azimuth
         self.carried = Carried(self)
+        self._low = False
         self.errors = self.graph.errors
+        self._cards = QTimer(self)
+        self._cards.setSingleShot(True)
+        self._cards.setInterval(60)
+        self._cards.timeout.connect(self.library.refresh)
         self._build()
         self._connect()
 
@@ -60,11 +75,12 @@ class PerformanceWorkspace(Workspace):
         column.setSpacing(8)
         base = Panel()
         base.column.addWidget(self.database)
+        base.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         column.addWidget(self.library, 1)
         column.addWidget(base)
-        self.across = _splitter(Qt.Orientation.Horizontal, (left, self.graph, self.preview), (0, 1, 0))
+        self.across = _splitter(Qt.Orientation.Horizontal, (left, self.graph, self.side), (0, 1, 0))
         self.across.setSizes([280, 690, 430])
-        self.down = _splitter(Qt.Orientation.Vertical, (self.across, self.composed), (1, 0))
+        self.down = _splitter(Qt.Orientation.Vertical, (self.across, self.composed, self.strip), (1, 0, 0))
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
         whole.addWidget(self.down)
@@ -76,8 +92,18 @@ class PerformanceWorkspace(Workspace):
         self.graph.carried.connect(self._carry)
         self.graph.dropped.connect(self._drop)
         self.composed.wanted.connect(self.wanted)
+        self.composed.source_wanted.connect(self.strip.setVisible)
         self.state.hint.connect(self.hint)
         self.thumbnails.ready.connect(self._drawn)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """In a low window lanes are lower, and the source is shown when it is asked for."""
+        super().resizeEvent(event)
+        low = self.height() < LOW
+        if low != self._low:
+            self._low = low
+            self.composed.view.show_low(low)
+            self.composed.source.setChecked(not low)
 
     # the project -------------------------------------------------------------------------------------------------
 
@@ -98,12 +124,13 @@ class PerformanceWorkspace(Workspace):
         self.thumbnails.forget()
         self.graph.stop()
         self.composed.stop()
+        self._cards.stop()
         self.project = None
 
     def close_view(self) -> None:
         """End threads and the render window."""
         self.detach()
-        self.preview.finish()
+        self.side.finish()
         self.thumbnails.close()
         self.calls.close()
 
@@ -166,6 +193,8 @@ class PerformanceWorkspace(Workspace):
 
     def _drawn(self, sequence_id: str, frame: int) -> None:
         self.composed.refresh_soon()
+        if not self._cards.isActive():
+            self._cards.start()
 
     # carrying motions to the timeline --------------------------------------------------------------------------------
 
@@ -206,6 +235,8 @@ class PerformanceWorkspace(Workspace):
             "ghosts": self.preview.ghost_button.toggle,
             "add_sequence": self.library.show_add_menu,
         }
+        if self.strip.command(name):
+            return True
         if name == "cancel":
             return self._cancel()
         if name in handlers:
@@ -214,7 +245,12 @@ class PerformanceWorkspace(Workspace):
         return self.time.command(name)
 
     def _cancel(self) -> bool:
-        given_up = [self.graph.canvas.cancel(), self.composed.view.cancel(), self.editing.cancel()]
+        given_up = [
+            self.matrix.view.cancel(),
+            self.graph.canvas.cancel(),
+            self.composed.view.cancel(),
+            self.editing.cancel(),
+        ]
         self.carried.hide()
         if any(given_up):
             self.refresh()
