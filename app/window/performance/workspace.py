@@ -234,6 +234,7 @@ class PerformanceWorkspace(Workspace):
             "zoom_time_out": lambda: self.composed.view.zoom(1 / 1.5),
             "ghosts": self.preview.ghost_button.toggle,
             "add_sequence": self.library.show_add_menu,
+            "export": self._export,
         }
         if self.strip.command(name):
             return True
@@ -243,6 +244,14 @@ class PerformanceWorkspace(Workspace):
             handlers[name]()
             return True
         return self.time.command(name)
+
+    def _export(self) -> None:
+        """Ask what of the performance is written, and where."""
+        from app.window.performance.export_dialog import ExportDialog
+
+        dialog = ExportDialog(self, self.state, self.preview.azimuth())
+        dialog.done.connect(lambda sentence: self.errors.tell(sentence, level="note"))
+        dialog.open()
 
     def _cancel(self) -> bool:
         given_up = [
