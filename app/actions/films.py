@@ -6,16 +6,17 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-import numpy as np
-
-from app.actions.results import animation_of, rate
+from app.actions.compositing import Composition, Standing, in_order, write_sheets
+from app.actions.moving import Moving, animated, floor, placed_contacts, solved_world
+from app.actions.results import rate
 from app.actions.session import Session
 from app.formats import Picture, write_video
-from app.stages.results import Array, World
+from app.stages.results import Array
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
 View = Literal["video", "side", "both"]
+LABELS = ("camera", "side")
 COMPARISONS = {
     "naive_tracks": "tracks interpolated (Fig. 5)",
     "first_pass": "first pass only (Fig. 9)",
@@ -32,6 +33,8 @@ def render_film(
     view: View = "both",
     dim: float = 0.0,
     points: bool = False,
+    standing: Standing | None = None,
+    frames: range | None = None,
     progress: Progress | None = None,
 ) -> None:
     """Write a film of animated characters at the clip's frame rate.
@@ -41,26 +44,44 @@ def render_film(
     view : "video" over the filmed frames, "side" from the side, "both" beside each other.
     dim : how far the filmed frames fade towards grey, 0 to 1.
     points : whether the tracked points are drawn.
+    standing : how the characters are put into the filmed scene; a measured background must be there where it asks.
+    frames : the frames to film, all where not given.
 
     Raises ``InputError`` when a character was not animated, or the file cannot be written.
     """
-    motions = [_Moving.of(session, character_id) for character_id in character_ids]
-    if not motions:
-        raise InputError("There is no character to film: add one and animate it.")
-    count = len(motions[0].vertices)
+    motions = animated(session, character_ids)
+    filmed = frames or range(len(motions[0].vertices))
+    count = len(filmed)
     report = progress or silent
 
     def pictures() -> Iterator[Picture]:
         sources: list[Iterable[Picture]] = []
         if view in ("video", "both"):
-            sources.append(_over_video(session, motions, dim, points))
+            sources.append(_over_video(session, motions, dim, points, filmed, standing=standing))
         if view in ("side", "both"):
-            sources.append(_from_side(session, motions[0], motions[0].vertices))
-        for frame, shown in enumerate(_together(sources, ("camera", "side") if view == "both" else ())):
+            sources.append(_from_side(session, motions[0], motions[0].vertices, filmed))
+        for frame, shown in enumerate(_together(sources, LABELS if view == "both" else ())):
             yield shown
             report((frame + 1) / count)
 
     write_video(target, pictures(), rate(session), count=count)
+
+
+def render_sheets(
+    session: Session,
+    character_ids: Sequence[str],
+    folder: Path,
+    *,
+    standing: Standing | None = None,
+    frames: range | None = None,
+    progress: Progress | None = None,
+) -> None:
+    """Write animated characters and their shadows without the film: a folder of PNG files with alpha."""
+    motions = animated(session, character_ids)
+    scene = Composition.of(session, motions, standing or Standing())
+    filmed = frames or range(len(scene))
+    sheets = in_order(lambda frame: scene.sheet(frame).rgba(), filmed)
+    write_sheets(folder, sheets, len(filmed), progress, first=filmed.start)
 
 
 def compare_film(
@@ -75,7 +96,7 @@ def compare_film(
 
     The comparisons must have been computed.
     """
-    moving = _Moving.of(session, character_id)
+    moving = Moving.of(session, character_id)
     columns: list[tuple[str, Array]] = [("Motionwright", moving.vertices)]
     for variant in variants:
         made: Any = session.ready(session.stages.comparison(character_id, variant))
@@ -100,9 +121,31 @@ def compare_film(
     write_video(target, pictures(), rate(session), count=count)
 
 
+def film_frame(
+    session: Session,
+    scene: Composition,
+    frame: int,
+    *,
+    view: View = "video",
+    dim: float = 0.0,
+    points: bool = False,
+) -> Picture:
+    """Give one frame of a film as ``render_film`` would write it."""
+    from imitation.rendering import draw_points
+
+    moving, parts = scene.motions[0], []
+    if view != "side":
+        picture = scene.frame(frame, dim)
+        found = _tracks(session) if points else []
+        parts.append(draw_points(picture, [track.positions[frame] for track in found]) if found else picture)
+    if view != "video":
+        parts.append(next(iter(_from_side(session, moving, moving.vertices, range(frame, frame + 1)))))
+    return next(_together([[part] for part in parts], LABELS if len(parts) > 1 else ()))
+
+
 def still(session: Session, character_id: str, frame: int, labels: Sequence[str] = ("camera", "side")) -> Picture:
     """Give one picture of a character over its frame and from the side."""
-    moving = _Moving.of(session, character_id)
+    moving = Moving.of(session, character_id)
     from imitation.rendering import side_by_side
 
     over = _over_video(session, [moving], 0.0, False, range(frame, frame + 1))
@@ -110,90 +153,49 @@ def still(session: Session, character_id: str, frame: int, labels: Sequence[str]
     return side_by_side([next(iter(over)), next(iter(side))], labels)
 
 
-class _Moving:
-    """A character with what drawing needs."""
-
-    def __init__(self, vertices: Array, faces: Any, colors: Any) -> None:
-        self.vertices, self.faces, self.colors = vertices, faces, colors
-
-    @classmethod
-    def of(cls, session: Session, character_id: str) -> _Moving:
-        animated, aligned = animation_of(session, character_id)
-        mesh = session.media.mesh(session.document.character(character_id).mesh)
-        return cls(animated.vertices, aligned.faces, mesh.colors)
-
-    def with_vertices(self, vertices: Array) -> _Moving:
-        return _Moving(vertices, self.faces, self.colors)
-
-
 def _over_video(
-    session: Session, motions: Sequence[_Moving], dim: float, points: bool, frames: range | None = None
+    session: Session,
+    motions: Sequence[Moving],
+    dim: float,
+    points: bool,
+    frames: range | None = None,
+    *,
+    standing: Standing | None = None,
 ) -> Iterator[Picture]:
-    from imitation.rendering import Layer, Renderer, composite, draw_points, ground_shadow
+    from imitation.rendering import draw_points
 
-    world, film = _world(session), session.frames()
-    contacts = _contacts(session)
-    renderers = [Renderer(m.faces, film.size, colors=m.colors, samples=2, up=world.normal) for m in motions]
-    tracks = [session.ready(session.stages.track(track.id)) for track in session.document.tracks] if points else []
-    for frame in frames or range(len(motions[0].vertices)):
-        camera, layers = world.cameras[frame], []
-        floor = _floor(world, contacts, frame)
-        for moving, renderer in zip(motions, renderers, strict=True):
-            pose = np.ascontiguousarray(moving.vertices[frame], np.float64)
-            lights = renderer.lights(pose, camera)
-            shadow = None
-            if floor is not None:
-                shadow = ground_shadow(pose, lights, camera, renderer.size, floor, renderer.look, renderer.up)
-            layers.append(Layer(renderer.draw(pose, camera, lights), shadow))
-        back = film[frame]
-        if dim:
-            back = np.rint(back + dim * (np.float32(96) - back)).astype(np.uint8)
-        shown = composite(back, layers)
-        found: list[Any] = [track for track in tracks if track is not None]
-        yield draw_points(shown, [track.positions[frame] for track in found]) if found else shown
+    scene = Composition.of(session, motions, standing or Standing())
+    found = _tracks(session) if points else []
+    shown = frames or range(len(scene))
+    for frame, picture in zip(shown, in_order(lambda frame: scene.frame(frame, dim), shown), strict=True):
+        yield draw_points(picture, [track.positions[frame] for track in found]) if found else picture
 
 
-def _from_side(session: Session, moving: _Moving, vertices: Array, frames: range | None = None) -> Iterator[Picture]:
+def _from_side(session: Session, moving: Moving, vertices: Array, frames: range | None = None) -> Iterator[Picture]:
     from imitation.rendering import Plane, side_view
 
-    world, film, contacts = _world(session), session.frames(), _contacts(session)
+    world, film, contacts = solved_world(session), session.frames(), placed_contacts(session)
     plane = Plane(world.normal * world.offset, world.normal) if world.grounded else None
     shown = frames or range(len(vertices))
-    floors = [_floor(world, contacts, frame) for frame in shown]
+    floors = [floor(world, contacts, frame) for frame in range(len(vertices))]
     return side_view(
-        vertices[shown.start : shown.stop],
+        vertices,
         moving.faces,
-        [world.cameras[frame] for frame in shown],
+        [world.cameras[frame] for frame in range(len(vertices))],
         film.size,
         ground=plane,
-        footing=None if any(floor is None for floor in floors) else floors,
+        footing=None if any(each is None for each in floors) else floors,
         colors=moving.colors,
         samples=2,
         up=world.normal,
+        shown=shown,
     )
 
 
-def _contacts(session: Session) -> dict[str, list[tuple[int, int, Array]]]:
-    """Give the placed contacts by track; what was not kept from an earlier opening is placed again, quickly."""
-    marked = [track for track in session.document.tracks if track.contacts]
-    found = {track.id: session.result(session.stages.contacts(track.id)) for track in marked}
-    return {
-        name: [(contact.first, contact.last, contact.place) for contact in placed]
-        for name, placed in found.items()
-        if isinstance(placed, list) and placed
-    }
-
-
-def _floor(world: World, contacts: dict[str, list[tuple[int, int, Array]]], frame: int) -> Any:
-    """Give what takes the shadow in a frame: the steps under the feet, else the ground plane, else nothing."""
-    from imitation.rendering import Plane, footing_at
-
-    if world.depth is not None:
-        return None
-    footing = footing_at(contacts, frame, world.normal)
-    if footing is not None:
-        return footing
-    return Plane(world.normal * world.offset, world.normal) if world.grounded else None
+def _tracks(session: Session) -> list[Any]:
+    """The tracks that are solved."""
+    tracks = [session.ready(session.stages.track(track.id)) for track in session.document.tracks]
+    return [track for track in tracks if track is not None]
 
 
 def _together(
@@ -202,10 +204,3 @@ def _together(
     from imitation.rendering import side_by_side_frames
 
     return iter(sources[0]) if len(sources) == 1 else side_by_side_frames(sources, labels, columns=columns)
-
-
-def _world(session: Session) -> World:
-    world = session.ready(session.stages.world)
-    if not isinstance(world, World):
-        raise InputError("The cameras have not been solved yet: run animate first.")
-    return world

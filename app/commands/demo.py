@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from app.actions.compositing import SHUTTER, Standing
 from app.actions.films import render_film
 from app.actions.performing_export import export_performance
 from app.actions.performing_films import film_performance
@@ -28,6 +29,8 @@ from app.commands.project import PATH
 def demo(console: Console, folder: Path, fresh: bool) -> None:
     """Let the sample's filmed hound move two characters, and join its walk with other takes into a performance.
 
+    The first character takes the hound's place in the film: behind the railing's posts, its shadow on the stairs.
+
     Writes a project, films and meshes into FOLDER (out).
     """
     started = time.monotonic()
@@ -37,22 +40,21 @@ def demo(console: Console, folder: Path, fresh: bool) -> None:
     with closing(_session(place)) as session:
         characters = session.document.characters
         console.compute(session, "Solving the cameras", (session.stages.cameras,))
+        standing = Standing(occlusion=True, shadow=True, plate=True, shutter=SHUTTER, grain=None)
         stages = tuple(session.stages.animation(each.id) for each in characters)
-        console.compute(session, "Animating", stages)
-        made = [str(session.folder.path)]
+        console.compute(session, "Animating and measuring the background", (*stages, *standing.stages(session)))
+        made, first = [str(session.folder.path)], characters[0]
         for each in characters:
             film = folder / f"{each.name}.mp4"
             with console.progress(f"Rendering {film.name}") as bar:
-                render_film(session, [each.id], film, progress=bar)
+                render_film(session, [each.id], film, standing=standing if each is first else None, progress=bar)
             animation = folder / f"{each.name}.glb"
             with console.progress(f"Writing {animation.name}") as bar:
                 export_animation(session, each.id, animation, progress=bar)
             made += [str(film), str(animation)]
         with console.progress("Writing meshes") as bar:
-            export_animation(
-                session, characters[0].id, folder / f"{characters[0].name}_frames", form="ply", progress=bar
-            )
-        made.append(str(folder / f"{characters[0].name}_frames"))
+            export_animation(session, first.id, folder / f"{first.name}_frames", form="ply", progress=bar)
+        made.append(str(folder / f"{first.name}_frames"))
         made += _perform(console, session, folder)
     seconds = time.monotonic() - started
     lines = [

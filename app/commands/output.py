@@ -8,12 +8,14 @@ from typing import Any
 
 import click
 
-from app.actions.films import COMPARISONS, compare_film, render_film
+from app.actions.compositing import SHUTTER, Standing, without_depth
+from app.actions.films import COMPARISONS, compare_film, render_film, render_sheets
 from app.actions.marks import character_named
 from app.actions.results import export_animation
 from app.actions.session import Session
 from app.commands.console import Console
 from app.commands.project import PATH, PROJECT
+from imitation.errors import NoSolution
 
 CHARACTER = click.option("--character", "name", help="Which character, where there are several.")
 
@@ -22,21 +24,51 @@ CHARACTER = click.option("--character", "name", help="Which character, where the
 @PROJECT
 @click.argument("target", type=PATH)
 @click.option("--character", "names", multiple=True, help="Only this character; may be given again.")
-@click.option("--view", type=click.Choice(["video", "side", "both"]), default="both", show_default=True)
+@click.option("--view", type=click.Choice(["video", "side", "both"]), help="Default: both; video for composites.")
 @click.option("--dim", type=click.FloatRange(0, 1), default=0.0, help="Fade the filmed frames towards grey.")
 @click.option("--points", is_flag=True, help="Draw the tracked points.")
+@click.option("--occlusion", is_flag=True, help="Let what stands before the characters hide them.")
+@click.option("--shadow", is_flag=True, help="Let their shadow fall on the measured background.")
+@click.option("--plate", is_flag=True, help="Take the filmed subject out.")
+@click.option("--match-light", is_flag=True, help="Light them as the background is lit.")
+@click.option(
+    "--motion-blur", "shutter", type=click.FloatRange(0, 1), is_flag=False, flag_value=SHUTTER, default=0.0,
+    help="Blur their own motion: the share of the frame time that the shutter is open, 0.5 where none is given.",
+)  # fmt: skip
+@click.option("--grain", is_flag=True, help="Put the film's grain over them.")
+@click.option("--light-turn", type=float, default=0.0, help="Turn the main light, degrees clockwise from above.")
+@click.option("--light-lift", type=float, default=0.0, help="Raise the main light, degrees.")
+@click.option("--brightness", type=click.FloatRange(0, 10), default=1.0, help="Factor on their light.")
+@click.option("--shadow-strength", type=click.FloatRange(0, 3), default=1.0, help="Factor on their shadows' darkness.")
 @click.pass_obj
 def render(
-    console: Console, project: Path, target: Path, names: tuple[str, ...], view: Any, dim: float, points: bool
-) -> None:
-    """Film the characters over the video and from the side, as an mp4."""
+    console: Console, project: Path, target: Path, names: tuple[str, ...], view: Any, dim: float, points: bool,
+    grain: bool, **scene: Any,
+) -> None:  # fmt: skip
+    """Film the characters over the video and from the side.
+
+    TARGET ends in .mp4; a name without a suffix becomes a folder of PNG files with alpha, characters and shadows alone.
+    """
+    standing = Standing(grain=None if grain else 0.0, **scene)
+    if not target.suffix and (view in ("side", "both") or dim or points or standing.plate):
+        raise click.UsageError("A folder of PNG files holds the characters alone: no view, plate, fading or points.")
     with closing(Session.open(project)) as session:
         document = session.document
         chosen = [character_named(document, name) for name in names] or list(document.characters)
-        console.compute(session, "Animating", tuple(session.stages.animation(each.id) for each in chosen))
+        stages = tuple(session.stages.animation(each.id) for each in chosen)
+        try:
+            if standing.needs_depth:
+                console.compute(session, "Measuring the background", standing.stages(session))
+        except NoSolution as reason:
+            raise without_depth(reason) from None
+        console.compute(session, "Animating", stages)
         ids = [each.id for each in chosen]
         with console.progress("Rendering") as bar:
-            render_film(session, ids, target, view=view, dim=dim, points=points, progress=bar)
+            if target.suffix:
+                shown = view or ("both" if standing == Standing() else "video")
+                render_film(session, ids, target, view=shown, dim=dim, points=points, standing=standing, progress=bar)
+            else:
+                render_sheets(session, ids, target, standing=standing, progress=bar)
         console.answer({"film": str(target)}, [f"Wrote {target}"])
 
 

@@ -118,7 +118,9 @@ def _encode(
     shape = _checked(first, 0, None)
     muxing = {} if path.suffix.lower() == ".mkv" else {"movflags": "+faststart"}
     with av.open(str(path), "w", options=muxing) as container:
-        stream: Any = container.add_stream("libx264", rate=fps, options={"preset": "medium", **options})
+        # Measured: with the macroblock tree, the encoder's choices hang on memory that nobody has set, so that each
+        # process writes other bytes for the same frames.
+        stream: Any = container.add_stream("libx264", rate=fps, options={"preset": "medium", "mbtree": "0", **options})
         height, width = shape[0] + shape[0] % 2, shape[1] + shape[1] % 2
         context = stream.codec_context
         context.width, context.height, context.pix_fmt = width, height, "yuv420p"

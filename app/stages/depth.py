@@ -19,11 +19,13 @@ from imitation import CameraPath
 
 if TYPE_CHECKING:
     # Only names: the engine loads slowly, and the window opens without it.
-    from imitation.depth import Background, DepthMap
+    from imitation.depth import Background, DepthMap, DepthSolver, Sketch
 
 WIDTH = 480
 """Pixels on the longest side at which a project's depth is solved: contacts and occlusion need no more."""
 KEY_SECONDS = 3.0
+MOST = 26
+LABEL = "Measuring the background"
 
 
 @attrs.frozen(eq=False)
@@ -42,15 +44,59 @@ class PlateFrame:
     invented: float
 
 
+@attrs.frozen(eq=False)
+class Plan:
+    """Which frames are solved, and how deep is searched.
+
+    Attributes
+    ----------
+    keys : frames, in order. near, far, middle : depths, units of the cameras.
+    """
+
+    keys: tuple[int, ...]
+    near: float
+    far: float
+    middle: float
+
+
+@once
+def plan(document: Document) -> Stage:
+    """Which frames get a depth map: the cameras decide."""
+    clip = document.clip
+    if clip is None:
+        return Stage("depth/plan", LABEL, _plan, blocked=tracking.NO_CLIP)
+    needs = (scene.cameras(document), tracking.masks(document))
+    return Stage("depth/plan", LABEL, _plan, (clip, WIDTH), needs, weight=3.0)
+
+
+@once
+def sketch(document: Document, slot: str, turn: str) -> Stage:
+    """One key frame's depth after the "first" or "second" pass; ``slot`` is its place among the key frames, as text."""
+    clip = document.clip
+    name = f"depth/{turn}/{slot}"
+    if clip is None:
+        return Stage(name, LABEL, _first, blocked=tracking.NO_CLIP)
+    needs: tuple[Stage, ...] = (plan(document), scene.cameras(document), tracking.masks(document))
+    if turn == "second":
+        needs += tuple(sketch(document, str(k), "first") for k in range(slots(clip.frame_count)))
+    compute = _first if turn == "first" else _second
+    return Stage(name, LABEL, compute, (clip, WIDTH, int(slot)), needs, weight=KEY_SECONDS / 2)
+
+
 @once
 def depth(document: Document) -> Stage:
     """Depth of the background in key frames, units of the cameras."""
     clip = document.clip
     if clip is None:
-        return Stage("depth", "Measuring the background", _depth, blocked=tracking.NO_CLIP)
-    needs = (scene.cameras(document), tracking.masks(document))
-    weight = KEY_SECONDS * max(2.0, clip.frame_count / 6)
-    return Stage("depth", "Measuring the background", _depth, (clip, WIDTH), needs, weight=weight)
+        return Stage("depth", LABEL, _depth, blocked=tracking.NO_CLIP)
+    needs: tuple[Stage, ...] = (plan(document), scene.cameras(document), tracking.masks(document))
+    needs += tuple(sketch(document, str(k), "second") for k in range(slots(clip.frame_count)))
+    return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=2, weight=2.0)
+
+
+def slots(frames: int) -> int:
+    """How many key frames a clip can have at most: a stage each, empty where the cameras choose fewer."""
+    return min(frames, MOST)
 
 
 @once
@@ -84,12 +130,62 @@ def background(frames: Any, maps: list[DepthMap], cameras: CameraPath, masks: Ma
     return Background(frames, cameras, maps, masks=masks)
 
 
-def _depth(context: Context, inputs: tuple[Clip, int], cameras: CameraPath, masks: Masks | None) -> list[DepthMap]:
-    from imitation.depth import background_depth
-
+def _plan(context: Context, inputs: tuple[Clip, int], cameras: CameraPath, masks: Masks | None) -> Plan:
     clip, width = inputs
-    frames = context.media.frames(clip)
-    return background_depth(frames, cameras, masks=masks, longest=width, progress=context.progress)
+    context.progress(0.0)
+    solver = _solver(context, clip, width, cameras, masks)
+    keys = solver.key_frames()
+    if len(keys) > slots(clip.frame_count):
+        raise AssertionError(f"{len(keys)} key frames have only {slots(clip.frame_count)} stages")
+    return Plan(tuple(keys), solver.reach.near, solver.reach.far, solver.reach.middle)
+
+
+def _first(
+    context: Context, inputs: tuple[Clip, int, int], plan_: Plan, cameras: CameraPath, masks: Masks | None
+) -> Sketch | None:
+    clip, width, slot = inputs
+    if slot >= len(plan_.keys):
+        return None
+    solver = _solver(context, clip, width, cameras, masks, plan_)
+    return solver.first(plan_.keys[slot], plan_.keys, context.progress)
+
+
+def _second(
+    context: Context, inputs: tuple[Clip, int, int], plan_: Plan, cameras: CameraPath, masks: Masks | None,
+    *sketches: Sketch | None,
+) -> Sketch | None:  # fmt: skip
+    clip, width, slot = inputs
+    if slot >= len(plan_.keys):
+        return None
+    known = {each.frame: each for each in sketches if each is not None}
+    if len(known) == 1:
+        return known[plan_.keys[0]]
+    solver = _solver(context, clip, width, cameras, masks, plan_)
+    return solver.second(plan_.keys[slot], known, context.progress)
+
+
+def _depth(
+    context: Context, inputs: tuple[Clip, int], plan_: Plan, cameras: CameraPath, masks: Masks | None,
+    *sketches: Sketch | None,
+) -> list[DepthMap]:  # fmt: skip
+    clip, width = inputs
+    solver = _solver(context, clip, width, cameras, masks, plan_)
+    known = {each.frame: each for each in sketches if each is not None}
+    maps = []
+    for done, frame in enumerate(plan_.keys):
+        context.progress(done / len(plan_.keys))
+        maps.append(solver.finish(frame, known))
+    context.progress(1.0)
+    return maps
+
+
+def _solver(
+    context: Context, clip: Clip, width: int, cameras: CameraPath, masks: Masks | None, plan_: Plan | None = None
+) -> DepthSolver:
+    from imitation.depth import DepthSolver, Range
+
+    reach = None if plan_ is None else Range(plan_.near, plan_.far, plan_.middle)
+    return DepthSolver(context.media.frames(clip), cameras, masks, longest=width, reach=reach)
 
 
 def _plate(

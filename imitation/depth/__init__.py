@@ -3,6 +3,7 @@
 from imitation.depth.checks import Range
 from imitation.depth.completion import Background, Plate
 from imitation.depth.depthmap import DepthMap
+from imitation.depth.hiding import hiding_depth, shown_background
 from imitation.depth.projection import projected
 from imitation.depth.solve import DepthSolver, Sketch, background_depth
 from imitation.depth.surface import BackgroundMesh, background_mesh, joined_mesh
@@ -17,6 +18,8 @@ __all__ = [
     "Sketch",
     "background_depth",
     "background_mesh",
+    "hiding_depth",
     "joined_mesh",
     "projected",
+    "shown_background",
 ]

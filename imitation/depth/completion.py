@@ -13,13 +13,14 @@ from imitation.cameras.path import CameraPath
 from imitation.depth.colours import choose_depth, gains, gather
 from imitation.depth.depthmap import DepthMap
 from imitation.depth.pictures import Pictures
-from imitation.depth.projection import consensus, projected
+from imitation.depth.projection import consensus, inverse_of, projected_inverse
 from imitation.errors import InputError
 from imitation.geometry.projection import Camera
 
 SOURCES = 10  # key frames whose depth is brought to a frame
 DONORS = 28  # frames whose colours are looked at, near ones first
 NEAREST = 8  # of them that see a place give its colour
+KEPT = 4  # depths of other frames that stay in memory
 SEAM = 1.5  # pixels over which the fill blends into the frame, at a width of 960
 
 
@@ -72,25 +73,30 @@ class Background:
             raise InputError(
                 f"The depth maps are {self.maps[0].depth.shape[::-1]} pixels, but the frames are {self.pictures.size}."
             )
+        self._last: tuple[DepthMap, ...] = ()  # depths asked for last, of no key frame: their plates ask again
+        self._inverse: dict[tuple[int, int], NDArray[np.float32]] = {}
         middle = float(np.nanmedian(self.maps[len(self.maps) // 2].depth))
         self.tolerance = 1.5 * self.maps[0].tolerance / middle**2
         """Difference of inverse depths that counts as the same surface."""
 
     def depth(self, frame: int) -> DepthMap:
         """Depth of any frame as far as the key frames give it: a key frame's own, else by projection (not filled)."""
-        for each in self.maps:
+        for each in (*self.maps, *self._last):
             if each.frame == frame:
                 return each
         near = self._nearest(frame, 6)
-        layers = np.stack([projected(each, self.camera(frame), self.pictures.size, least=1) for each in near])
+        layers = np.stack([self._brought(each, frame, 1) for each in near])
         rank = 1 / (1 + 0.15 * np.arange(len(near)))
         inverse, support = consensus(layers, self.tolerance, rank.astype(np.float32))
         if (inverse <= 0).any():
             # Where nothing is confirmed, what the nearest key frames hold is better than nothing.
-            spare = np.stack([projected(each, self.camera(frame), self.pictures.size) for each in near])
+            open_ = inverse <= 0
+            spare = np.stack([self._brought(each, frame, 0, open_) for each in near])
             loose, _ = consensus(spare, self.tolerance, rank.astype(np.float32))
             inverse = np.where(inverse > 0, inverse, loose)
-        return self._map(frame, inverse, support)
+        made = self._map(frame, inverse, support)
+        self._last = (made, *self._last[: KEPT - 1])
+        return made
 
     def plate(self, frame: int) -> Plate:
         """The frame without the subject, with depth everywhere."""
@@ -120,15 +126,43 @@ class Background:
         if invented.any():
             done = cv2.inpaint(done, invented.astype(np.uint8), 5, cv2.INPAINT_TELEA)
         done = _seamless(picture, done, hole)
-        inverse = _extended(inverse, invented)
         support = np.where(hole, 0, own.confidence).astype(np.uint8)
         support[rows[painted], columns[painted]] = np.minimum(seen[painted], 255)
+        inverse = _extended(inverse, invented, invented)
         depth = attrs.evolve(self._map(frame, inverse, support), invented=invented)
         return Plate(frame, done, depth, filled, invented)
+
+    def everywhere(self, frame: int) -> DepthMap:
+        """Depth of any frame also behind the subject, as far as other key frames see it there; the picture is not read.
+
+        Only depth that at least one other key frame confirms counts, the rest is taken from around: for shadows over
+        the frame as it was filmed. A plate chooses behind the subject by colour too.
+        """
+        own = self.depth(frame)
+        weak = ~np.isfinite(own.depth) | (own.confidence == 0)
+        if not weak.any():
+            return own
+        layers = np.stack([self._brought(each, frame, 1, weak) for each in self._spread(frame)])
+        found, votes = consensus(layers, self.tolerance)
+        with np.errstate(divide="ignore"):
+            inverse = np.nan_to_num(1 / own.depth, nan=0.0).astype(np.float32)
+        taken = weak & (found > 0)
+        support = np.where(taken, votes, own.confidence).astype(np.uint8)
+        left = weak & ~taken
+        return self._map(frame, _extended(np.where(taken, found, inverse), left, left), support)
 
     def camera(self, frame: int) -> Camera:
         """A frame's camera."""
         return self.pictures.cameras[frame]
+
+    def _brought(
+        self, source: DepthMap, frame: int, least: int, wanted: NDArray[np.bool_] | None = None
+    ) -> NDArray[np.float32]:
+        """Inverse depth (h, w) that a key frame gives to another frame's wanted pixels."""
+        key = source.frame, least
+        if key not in self._inverse:
+            self._inverse[key] = inverse_of(source, least)
+        return projected_inverse(self._inverse[key], source.camera, self.camera(frame), self.pictures.size, wanted)
 
     def _map(self, frame: int, inverse: NDArray[np.float32], support: NDArray[np.uint8]) -> DepthMap:
         with np.errstate(divide="ignore"):
@@ -164,8 +198,12 @@ class Background:
         """Inverse depth (k,), colour (k, 3) and number of frames that see it, of the pixels wanted."""
         sources = self._spread(frame)
         camera, size = self.camera(frame), self.pictures.size
-        loose = np.stack([projected(each, camera, size)[rows, columns] for each in sources], axis=1)
-        firm = np.stack([projected(each, camera, size, least=3)[rows, columns] for each in sources], axis=1)
+        wanted = np.zeros(size[::-1], bool)
+        wanted[rows, columns] = True
+        loose, firm = (
+            np.stack([self._brought(each, frame, least, wanted)[rows, columns] for each in sources], axis=1)
+            for least in (0, 3)
+        )
         inverse = choose_depth(rows, columns, loose, firm, camera, stack, hidden, poses, scale, self.tolerance)
         inverse = _voted(inverse, rows, columns, size, self.tolerance)
         colour, seen = gather(rows, columns, inverse, camera, stack, hidden, poses, scale, NEAREST)
@@ -211,16 +249,20 @@ def _seamless(picture: NDArray[np.uint8], filled: NDArray[np.uint8], hole: NDArr
     return mixed
 
 
-def _extended(inverse: NDArray[np.float32], hole: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Depth where no view has any: from around, smoothly (the far side wins: what is hidden lies behind)."""
+def _extended(inverse: NDArray[np.float32], hole: NDArray[np.bool_], weak: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Depth where no view has any: from around, smoothly.
+
+    What is ``weak``, confirmed by no other frame, stays but is not carried on: beside a hole it is often a guess.
+    """
     import cv2
 
     missing = hole | (inverse <= 0)
     if not missing.any() or missing.all():
         return inverse
-    known = np.where(missing, 0, inverse).astype(np.float32)
-    weight = (~missing).astype(np.float32)
-    result = known.copy()
+    silent = missing if (missing | weak).all() else missing | weak
+    known = np.where(silent, 0, inverse).astype(np.float32)
+    weight = (~silent).astype(np.float32)
+    result = np.where(missing, 0, inverse).astype(np.float32)
     open_ = missing.copy()
     radius = 2.0
     while open_.any() and radius < 4 * max(inverse.shape):

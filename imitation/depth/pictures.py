@@ -41,6 +41,7 @@ class Pictures:
         self.size = (round(self.full[0] * scale), round(self.full[1] * scale))
         self.scale = (self.size[0] / self.full[0], self.size[1] / self.full[1])
         self._signals: OrderedDict[int, NDArray[np.float32]] = OrderedDict()
+        self._hidden: dict[int, NDArray[np.uint8]] = {}  # a bit a pixel
 
     def __len__(self) -> int:
         return len(self.frames)
@@ -92,10 +93,13 @@ class Pictures:
         """1 on the subject and its rim (h, w), 0 elsewhere, working size."""
         import cv2
 
-        radius = max(1, round(GROWTH * max(self.size)))
-        disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
-        grown: NDArray[np.uint8] = cv2.dilate(self.mask(frame), disc)
-        return grown
+        bits = self._hidden.get(frame)
+        if bits is None:
+            radius = max(1, round(GROWTH * max(self.size)))
+            disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))
+            bits = self._hidden[frame] = np.packbits(cv2.dilate(self.mask(frame), disc))
+        flat: NDArray[np.uint8] = np.unpackbits(bits, count=self.size[0] * self.size[1])
+        return flat.reshape(self.size[::-1])
 
     def signal(self, frame: int) -> NDArray[np.float32]:
         """What is compared (h, w, 4): intensity less its local mean, its gradients along x and y, 1 where hidden."""

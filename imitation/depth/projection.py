@@ -14,9 +14,16 @@ from imitation.depth.sweep import geometry
 from imitation.geometry.projection import Camera
 
 FRONT = 0.03  # relative depth within which splats belong to one surface
+TILE = 32  # pixels: what falls into no tile that is wanted is passed over together
 
 
-def projected(source: DepthMap, camera: Camera, size: tuple[int, int], least: int = 0) -> NDArray[np.float32]:
+def projected(
+    source: DepthMap,
+    camera: Camera,
+    size: tuple[int, int],
+    least: int = 0,
+    wanted: NDArray[np.bool_] | None = None,
+) -> NDArray[np.float32]:
     """Inverse depth (h, w) that a map gives to the pixels of another camera, 0 where none.
 
     Every pixel of the map covers the four pixels round its place; the nearest surface wins, and what belongs to it is
@@ -26,37 +33,98 @@ def projected(source: DepthMap, camera: Camera, size: tuple[int, int], least: in
     ----------
     camera, size : of the picture wanted, (width, height) pixels.
     least : confidence that a pixel of the map needs to count.
+    wanted : (h, w) the pixels that are needed: only these are right, which is quicker.
     """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        inverse = np.where(source.confidence >= least, np.nan_to_num(1 / source.depth, nan=0.0), 0).astype(np.float32)
-    return projected_inverse(inverse, source.camera, camera, size)
+    return projected_inverse(inverse_of(source, least), source.camera, camera, size, wanted)
+
+
+def inverse_of(source: DepthMap, least: int = 0) -> NDArray[np.float32]:
+    """Inverse depth (h, w) of a map, 0 where it has none of this confidence."""
+    known = np.isfinite(source.depth) & (source.confidence >= least)
+    inverse = np.zeros(source.depth.shape, np.float32)
+    np.divide(np.float32(1), source.depth, out=inverse, where=known)
+    return inverse
 
 
 def projected_inverse(
-    inverse: NDArray[np.float32], source: Camera, camera: Camera, size: tuple[int, int]
+    inverse: NDArray[np.float32],
+    source: Camera,
+    camera: Camera,
+    size: tuple[int, int],
+    wanted: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.float32]:
     """The same for inverse depths (h, w), 0 where none, that a camera ``source`` sees."""
     maps = geometry((source.K, source.R, source.T), [(camera.K, camera.R, camera.T)])
     shape = size[::-1]
     front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+    picked = np.ones((1, 1), np.bool_) if wanted is None else wanted
+    high, wide = (-(-side // TILE) for side in picked.shape)
+    padded = np.zeros((high * TILE, wide * TILE), np.bool_)
+    padded[: picked.shape[0], : picked.shape[1]] = picked
+    tiles = padded.reshape(high, TILE, wide, TILE).any(axis=(1, 3))
     for collect in (False, True):
-        _splat(inverse, maps.A[0], maps.b[0], front, total, weight, collect)
-    return np.where(weight > 0, total / np.maximum(weight, np.float32(1e-12)), 0).astype(np.float32)
+        _splat(inverse, maps.A[0], maps.b[0], front, total, weight, collect, picked, tiles, wanted is not None)
+    return np.divide(total, weight, out=np.zeros_like(total), where=weight > 0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _splat(inverse: Any, A: Any, b: Any, front: Any, total: Any, weight: Any, collect: bool) -> None:
+def _falls(inverse: Any, y: int, first: int, last: int, A: Any, b: Any, tiles: Any) -> bool:
+    """Whether pixels ``first`` to ``last`` - 1 of a row may fall into a wanted tile.
+
+    Along a row and along a ray, places in the other picture move one way only as long as they lie before its camera:
+    the four ends of both bound all of them.
+    """
+    low, high = np.float32(np.inf), np.float32(0)
+    for x in range(first, last):
+        w = inverse[y, x]
+        if w > 0:
+            low, high = min(low, w), max(high, w)
+    if high <= 0:
+        return False
+    left, right, top, bottom = np.inf, -np.inf, np.inf, -np.inf
+    for x in (first, last - 1):
+        for w in (low, high):
+            z = A[2, 0] * x + A[2, 1] * y + A[2, 2] + w * b[2]
+            if z <= 1e-6:
+                return True
+            u = (A[0, 0] * x + A[0, 1] * y + A[0, 2] + w * b[0]) / z
+            v = (A[1, 0] * x + A[1, 1] * y + A[1, 2] + w * b[1]) / z
+            left, right, top, bottom = min(left, u), max(right, u), min(top, v), max(bottom, v)
+    rows, columns = tiles.shape
+    for j in range(max(0, int(np.floor((top - 1) / TILE))), min(rows - 1, int(np.floor((bottom + 2) / TILE))) + 1):
+        for i in range(
+            max(0, int(np.floor((left - 1) / TILE))), min(columns - 1, int(np.floor((right + 2) / TILE))) + 1
+        ):
+            if tiles[j, i]:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _splat(
+    inverse: Any, A: Any, b: Any, front: Any, total: Any, weight: Any, collect: bool, wanted: Any, tiles: Any,
+    some: bool,
+) -> None:  # fmt: skip
     height, width = front.shape
+    # Held in local names: what is written might otherwise be them, as far as the compiler knows.
+    a00, a01, a02, b0 = A[0, 0], A[0, 1], A[0, 2], b[0]
+    a10, a11, a12, b1 = A[1, 0], A[1, 1], A[1, 2], b[1]
+    a20, a21, a22, b2 = A[2, 0], A[2, 1], A[2, 2], b[2]
     for y in range(inverse.shape[0]):
+        useful = True
         for x in range(inverse.shape[1]):
+            if some and x % TILE == 0:
+                useful = _falls(inverse, y, x, min(x + TILE, inverse.shape[1]), A, b, tiles)
+            if not useful:
+                continue
             w = inverse[y, x]
             if w <= 0:
                 continue
-            z = A[2, 0] * x + A[2, 1] * y + A[2, 2] + w * b[2]
+            z = a20 * x + a21 * y + a22 + w * b2
             if z <= 0:
                 continue
-            u = (A[0, 0] * x + A[0, 1] * y + A[0, 2] + w * b[0]) / z
-            v = (A[1, 0] * x + A[1, 1] * y + A[1, 2] + w * b[1]) / z
+            u = (a00 * x + a01 * y + a02 + w * b0) / z
+            v = (a10 * x + a11 * y + a12 + w * b1) / z
             if not (u > -1 and v > -1 and u < width and v < height):
                 continue
             there = w / z
@@ -64,7 +132,7 @@ def _splat(inverse: Any, A: Any, b: Any, front: Any, total: Any, weight: Any, co
             for dy in range(2):
                 for dx in range(2):
                     px, py = iu + dx, iv + dy
-                    if px < 0 or py < 0 or px >= width or py >= height:
+                    if px < 0 or py < 0 or px >= width or py >= height or (some and not wanted[py, px]):
                         continue
                     share = (1 - abs(u - px)) * (1 - abs(v - py))
                     if not collect:

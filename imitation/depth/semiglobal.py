@@ -9,13 +9,22 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from imitation.depth.sweep import bands
+from imitation.progress import Progress, silent
+
 SMALL, LARGE, LEAST = 14, 320, 60  # penalties of a step of one plane, and of a larger one: at no edge, at least
 SOFTENING = 8.0  # grey levels over which the larger penalty halves
 _FAR = 8000  # no path comes from outside the volume
 
 
 def semiglobal(
-    volume: NDArray[np.uint8], grey: NDArray[np.uint8], *, small: int = SMALL, large: int = LARGE, least: int = LEAST
+    volume: NDArray[np.uint8],
+    grey: NDArray[np.uint8],
+    *,
+    small: int = SMALL,
+    large: int = LARGE,
+    least: int = LEAST,
+    progress: Progress = silent,
 ) -> NDArray[np.float32]:
     """Choose a plane for every pixel.
 
@@ -23,6 +32,7 @@ def semiglobal(
     ----------
     volume : (h, w, d) cost of each plane.
     grey : (h, w) the picture.
+    progress : gets fractions every few rows; may raise ``Cancelled``.
 
     Returns
     -------
@@ -31,8 +41,14 @@ def semiglobal(
     steps = np.arange(256, dtype=np.float64)
     table = np.maximum(large / (1 + steps / SOFTENING), least).round().astype(np.int16)
     total = np.zeros(volume.shape, np.uint16)
-    _paths(volume, grey, np.int16(small), table, total, False)
-    _paths(volume, grey, np.int16(small), table, total, True)
+    height, width, depth = volume.shape
+    for half, backward in enumerate((False, True)):
+        # Two rows of path costs for the three paths from the row before.
+        rows = np.full((2, 3, width, depth + 2), _FAR, np.int16)
+        lowest = np.zeros((2, 3, width), np.int16)
+        for first, last in bands(height):
+            progress(0.5 * half + 0.5 * first / height)
+            _paths(volume, grey, np.int16(small), table, total, backward, rows, lowest, first, last)
     plane = np.empty(grey.shape, np.float32)
     _choose(total, plane)
     return plane
@@ -55,16 +71,17 @@ def _step(cost: Any, before: Any, least: Any, small: Any, large: Any, after: Any
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _paths(volume: Any, grey: Any, small: Any, table: Any, total: Any, backward: bool) -> None:
+def _paths(
+    volume: Any, grey: Any, small: Any, table: Any, total: Any, backward: bool, rows: Any, lowest: Any, first: int,
+    end: int,
+) -> None:  # fmt: skip
     """Four of the eight paths: along the row, and from the row before, straight and both ways aslant."""
     height, width, depth = volume.shape
-    # Two rows of path costs for the three paths from the row before; two pixels for the one along the row.
-    rows = np.full((2, 3, width, depth + 2), _FAR, np.int16)
-    lowest = np.zeros((2, 3, width), np.int16)
+    # Path costs of two pixels for the path along the row.
     along = np.full((2, depth + 2), _FAR, np.int16)
     start = np.zeros(depth + 2, np.int16)
     way = -1 if backward else 1
-    for k in range(height):
+    for k in range(first, end):
         y = height - 1 - k if backward else k
         now, last = k % 2, 1 - k % 2
         least = np.int16(0)

@@ -20,7 +20,7 @@ from imitation.depth.semiglobal import semiglobal
 from imitation.depth.sweep import NEUTRAL, geometry, sweep
 from imitation.depth.views import choose_views, key_frames
 from imitation.errors import InputError
-from imitation.progress import Progress, silent
+from imitation.progress import Progress, part, silent
 
 PLANES, PLANES_LARGE = 144, 160
 LEADERS = 10  # other maps, the nearest in time, that lead the second pass
@@ -93,13 +93,13 @@ class DepthSolver:
         middle = range_near(self.pictures.cameras, frame, self.reach).middle
         return choose_views(self.pictures.cameras, frame, set(keys), self.pictures.full, middle)
 
-    def first(self, frame: int, keys: Sequence[int]) -> Sketch:
+    def first(self, frame: int, keys: Sequence[int], progress: Progress = silent) -> Sketch:
         """Depth from the pictures alone."""
-        return self._pass(frame, keys, {})
+        return self._pass(frame, keys, {}, progress)
 
-    def second(self, frame: int, sketches: Mapping[int, Sketch]) -> Sketch:
+    def second(self, frame: int, sketches: Mapping[int, Sketch], progress: Progress = silent) -> Sketch:
         """Depth from the pictures and from what the first pass found in the other frames."""
-        return self._pass(frame, list(sketches), {f: s for f, s in sketches.items() if f != frame})
+        return self._pass(frame, list(sketches), {f: s for f, s in sketches.items() if f != frame}, progress)
 
     def finish(self, frame: int, sketches: Mapping[int, Sketch]) -> DepthMap:
         """The depth map of a frame, with the number of the others that agree, at the size of the frames."""
@@ -138,7 +138,8 @@ class DepthSolver:
         lent = ~sketch.seen & (brought > 0)
         return np.where(lent, brought, sketch.inverse), np.where(lent, support, count).astype(np.uint8)
 
-    def _pass(self, frame: int, keys: Sequence[int], known: Mapping[int, Sketch]) -> Sketch:
+    def _pass(self, frame: int, keys: Sequence[int], known: Mapping[int, Sketch], progress: Progress) -> Sketch:
+        progress(0.0)
         pictures = self.pictures
         views = self.views(frame, keys)
 
@@ -153,17 +154,18 @@ class DepthSolver:
         planes = self.planes(frame)
         volume = sweep(
             pictures.signal(frame), pictures.hidden(frame), np.stack([pictures.signal(v) for v in views]),
-            geometry(pose(frame), [pose(v) for v in views]), planes, prior, self.sigma,
+            geometry(pose(frame), [pose(v) for v in views]), planes, prior, self.sigma, part(progress, 0.0, 0.75),
         )  # fmt: skip
         untold = volume == NEUTRAL
         if known:
             camera, size = pictures.camera(frame), pictures.size
             others = sorted(known.values(), key=lambda each: (abs(each.frame - frame), each.frame))[:LEADERS]
             layers = [projected_inverse(o.measured, pictures.camera(o.frame), camera, size) for o in others]
+            progress(0.76)
             lead(volume, np.stack(layers), planes, 1.0)
         grey = pictures.grey(frame)
         grey[pictures.hidden(frame) > 0] = 128  # the subject's edges are none of the background's
-        plane = semiglobal(volume, grey)
+        plane = semiglobal(volume, grey, progress=part(progress, 0.78, 1.0))
         step = float(planes[1] - planes[0])
         chosen = np.rint(plane).astype(np.int64)[..., None]
         seen = ~np.take_along_axis(untold, chosen, axis=2)[..., 0]
@@ -215,17 +217,11 @@ def background_depth(
     for frame in chosen:
         if not 0 <= frame < len(frames):
             raise InputError(f"Frame {frame} cannot be solved: the clip has frames 0 to {len(frames) - 1}.")
-    total = 2 * len(chosen)
-    sketches = {}
-    for done, frame in enumerate(chosen):
-        sketches[frame] = solver.first(frame, chosen)
-        report((done + 1) / total * 0.98)
+    steps = [part(report, 0.49 * k / len(chosen), 0.49 * (k + 1) / len(chosen)) for k in range(2 * len(chosen))]
+    sketches = {frame: solver.first(frame, chosen, step) for frame, step in zip(chosen, steps, strict=False)}
     if len(chosen) > 1:
-        better = {}
-        for done, frame in enumerate(chosen, start=len(chosen)):
-            better[frame] = solver.second(frame, sketches)
-            report((done + 1) / total * 0.98)
-        sketches = better
+        second = zip(chosen, steps[len(chosen) :], strict=True)
+        sketches = {frame: solver.second(frame, sketches, step) for frame, step in second}
     maps = [solver.finish(frame, sketches) for frame in chosen]
     report(1.0)
     return maps

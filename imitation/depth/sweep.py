@@ -15,6 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from imitation.progress import Progress, silent
+
 INTENSITY, GRADIENT = 0.35, 0.65  # shares of the two differences in the cost
 INTENSITY_CUT, GRADIENT_CUT = 20.0, 12.0  # grey levels from which a difference is as bad as can be
 SHARE = 0.75  # of the views that see a place: the best are averaged
@@ -22,6 +24,7 @@ NEUTRAL = 128  # cost where nothing can be said: no view sees the place, or the 
 FLOOR = 0.3  # what the geometric prior leaves at least of a likelihood
 ENOUGH = 5  # of the 9 pixels round a place must be seen
 MOST_VIEWS = 8
+BAND = 16  # rows
 
 _ONE = 4096  # one pixel seen, in a sum that counts pixels in its upper four bits
 
@@ -66,6 +69,7 @@ def sweep(
     planes: NDArray[np.float32],
     prior: NDArray[np.float32] | None = None,
     sigma: float = 1.0,
+    progress: Progress = silent,
 ) -> NDArray[np.uint8]:
     """Cost volume (h, w, d), 0 to 255.
 
@@ -76,6 +80,7 @@ def sweep(
     views : (n, h, w, 4) the same of at most ``MOST_VIEWS`` other frames.
     maps : where the views see the pixels.
     planes : (d,) inverse depths of the planes, evenly spaced.
+    progress : gets fractions every few rows; may raise ``Cancelled``.
     prior : (n, h, w) inverse depth known in each view, 0 where none: a plane that would be seen where another depth is
         known loses likelihood with the round-trip error in pixels, scale ``sigma``, at most 1 - ``FLOOR`` of it.
     """
@@ -83,11 +88,20 @@ def sweep(
     volume = np.empty((height, width, len(planes)), np.uint8)
     known = np.zeros((len(views), 1, 1), np.float32) if prior is None else prior
     network = np.array(_network(MOST_VIEWS), np.int64)
-    _sweep(
-        signal, hidden, views, maps.A, maps.b, maps.back_b, planes, known, prior is not None,
-        np.float32(1 / (2 * sigma * sigma)), network, volume,
-    )  # fmt: skip
+    row = np.zeros((width + 2, len(planes)), np.uint16)
+    sums = np.zeros((3, len(views), width, len(planes)), np.uint16)
+    for first, last in bands(height + 1):
+        progress(first / (height + 1))
+        _sweep(
+            signal, hidden, views, maps.A, maps.b, maps.back_b, planes, known, prior is not None,
+            np.float32(1 / (2 * sigma * sigma)), network, volume, row, sums, first, last,
+        )  # fmt: skip
     return volume
+
+
+def bands(rows: int) -> list[tuple[int, int]]:
+    """First row and row after the last of each band, between which a computation looks up whether to stop."""
+    return [(first, min(first + BAND, rows)) for first in range(0, rows, BAND)]
 
 
 def _network(count: int) -> list[tuple[int, int]]:
@@ -233,17 +247,16 @@ def _best_share(values: Any, seen: Any, network: Any, total: Any, out: Any) -> N
 @njit(cache=True, nogil=True, error_model="numpy")
 def _sweep(
     signal: Any, hidden: Any, views: Any, A: Any, b: Any, back_b: Any, planes: Any, known: Any, guided: bool,
-    tight: Any, network: Any, volume: Any,
+    tight: Any, network: Any, volume: Any, row: Any, sums: Any, begin: int, end: int,
 ) -> None:  # fmt: skip
+    """Rows ``begin`` to ``end`` - 1, one after the last of the picture too; ``sums`` holds the three last rows."""
     height, width = hidden.shape
     count, depth = views.shape[0], planes.shape[0]
-    row = np.zeros((width + 2, depth), np.uint16)
-    sums = np.zeros((3, count, width, depth), np.uint16)
     values = np.empty((8, depth), np.int16)
     seen = np.empty(depth, np.int16)
     total = np.empty(depth, np.int16)
     rows = np.zeros(3, np.int64)
-    for y in range(height + 1):
+    for y in range(begin, end):
         into = y % 3
         if y < height:
             for n in range(count):

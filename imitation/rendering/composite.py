@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
-import attrs
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -13,26 +12,12 @@ from imitation.geometry.projection import Camera
 from imitation.progress import Progress, silent
 from imitation.rendering.ground import Footing, Ground, Lights, Plane, ground_shadow
 from imitation.rendering.light import Look
+from imitation.rendering.matte import SINK, Layer, flattened
 from imitation.rendering.mesh import UP, Renderer, Rendering
 from imitation.rendering.motion_blur import blurred
-from imitation.rendering.occlusion import visibility
 from imitation.rendering.tone import add_grain
 
 Picture = NDArray[np.uint8]
-
-
-@attrs.frozen(eq=False)
-class Layer:
-    """What is laid over a frame.
-
-    Attributes
-    ----------
-    rendering : the character.
-    shadow : (h, w) how much of the frame's light it takes, 0 to 1, or None.
-    """
-
-    rendering: Rendering
-    shadow: NDArray[np.float32] | None = None
 
 
 def composite(
@@ -53,30 +38,12 @@ def composite(
     tolerance : how far behind the background still counts as before it, world units.
     soft : anti-alias the edges of what hides, see ``visibility``; estimated depth needs it.
     """
-    out = frame.astype(np.float32)
     for layer in layers:
         if layer.rendering.depth.shape != frame.shape[:2]:
             raise InputError(
                 f"The layer is {layer.rendering.depth.shape[::-1]} pixels, but the frame is {frame.shape[1::-1]}."
             )
-        if layer.shadow is not None:
-            out *= 1 - layer.shadow[..., None]
-    shown = (
-        []
-        if background is None
-        else [visibility(each.rendering.depth, background, tolerance, soft=soft) for each in layers]
-    )
-    # Farthest first, decided pixel by pixel.
-    depths = np.stack([layer.rendering.depth for layer in layers]) if layers else np.zeros((0, *frame.shape[:2]))
-    for place in np.argsort(-depths, axis=0, kind="stable") if len(layers) > 1 else np.zeros((len(layers), 1, 1), int):
-        for index, layer in enumerate(layers):
-            alpha = layer.rendering.rgba[..., 3:].astype(np.float32) / 255
-            alpha = np.where((place == index)[..., None], alpha, 0)
-            if background is not None:
-                alpha = alpha * shown[index][..., None]
-            out += alpha * (layer.rendering.rgba[..., :3] - out)
-    done: Picture = np.clip(np.rint(out), 0, 255).astype(np.uint8)
-    return done
+    return flattened(layers, frame.shape[:2], background=background, tolerance=tolerance, soft=soft).over(frame)
 
 
 def render_sequence(
@@ -160,13 +127,14 @@ def over_frame(
     shadow = None
     if ground is not None:
         shadow = ground_shadow(vertices, lights, camera, renderer.size, ground, renderer.look, renderer.up)
-    tolerance = 0.05 * lights[0].radius
-    out = composite(frame, [Layer(rendering, shadow)], background=background, tolerance=tolerance, soft=True)
+    if rendering.depth.shape != frame.shape[:2]:
+        raise InputError(f"The layer is {renderer.size} pixels, but the frame is {frame.shape[1::-1]}.")
+    matte = flattened(
+        [Layer(rendering, shadow)], frame.shape[:2], background=background, tolerance=SINK * lights[0].radius, soft=True
+    )
+    out = matte.over(frame)
     if grain > 0:
-        alpha = rendering.rgba[..., 3].astype(np.float32) / 255
-        if background is not None:
-            alpha = alpha * visibility(rendering.depth, background, tolerance)
-        out = add_grain(out, alpha, grain, seed)
+        out = add_grain(out, matte.cover, grain, seed)
     return out if points is None else draw_points(out, points)
 
 

@@ -6,8 +6,9 @@ import attrs
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from imitation.errors import InputError
 from imitation.geometry.projection import Camera
-from imitation.rendering.light import Look
+from imitation.rendering.light import Look, key_direction
 from imitation.rendering.mesh import UP, linear
 
 Picture = NDArray[np.uint8]
@@ -77,6 +78,48 @@ def match_look(
         bounce=tinted(start.bounce),
         # The less one direction explains, the softer the light, and the fainter its shadow.
         shadow=float(start.shadow * np.clip(0.6 + 4 * share, 0.6, 1.3)),
+    )
+
+
+def adjusted_look(
+    look: Look, camera: Camera, up: ArrayLike = UP, *, turn: float = 0.0, lift: float = 0.0, brightness: float = 1.0,
+    shadow: float = 1.0,
+) -> Look:  # fmt: skip
+    """Turn the lights of a look by hand; its main light stands still from then on.
+
+    Parameters
+    ----------
+    camera : of the first frame, by which a look without a direction takes its own.
+    turn, lift : degrees clockwise seen from above, and upwards; the light stays 5 to 90 degrees above the ground.
+    brightness, shadow : factors on all lights, and on how dark shadows are.
+    """
+    if not (np.isfinite([turn, lift, brightness, shadow]).all() and brightness >= 0 and shadow >= 0):
+        raise InputError("Lights need finite angles and factors that are not negative.")
+    above = np.asarray(up, np.float64) / np.linalg.norm(np.asarray(up, np.float64))
+    key = key_direction(look, camera, above)
+    height = np.arcsin(np.clip(key @ above, -1, 1))
+    level = key - above * (key @ above)
+    if np.linalg.norm(level) < 1e-9:
+        level = np.roll(above, 1) - above * (np.roll(above, 1) @ above)
+    level = level / np.linalg.norm(level)
+    angle = -np.radians(turn)
+    level = level * np.cos(angle) + np.cross(above, level) * np.sin(angle)
+    if lift:
+        height = np.clip(height + np.radians(lift), np.radians(5), np.radians(90))
+    turned = np.sin(height) * above + np.cos(height) * level
+
+    def brighter(rgb: tuple[float, float, float]) -> tuple[float, float, float]:
+        return rgb[0] * brightness, rgb[1] * brightness, rgb[2] * brightness
+
+    return attrs.evolve(
+        look,
+        key=(float(turned[0]), float(turned[1]), float(turned[2])),
+        key_light=brighter(look.key_light),
+        fill_light=brighter(look.fill_light),
+        sky=brighter(look.sky),
+        bounce=brighter(look.bounce),
+        shadow=float(np.clip(look.shadow * shadow, 0, 1)),
+        contact=float(np.clip(look.contact * shadow, 0, 1)),
     )
 
 

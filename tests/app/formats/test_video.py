@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pickle
+import subprocess
+import sys
 import threading
 from fractions import Fraction
 from pathlib import Path
@@ -169,6 +171,26 @@ def test_same_frames_same_bytes(tmp_path: Path) -> None:
     for name in ("a.mp4", "b.mp4"):
         write_video(tmp_path / name, (numbered(n) for n in range(30)), 25)
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
+
+
+def test_same_frames_same_bytes_in_every_process(tmp_path: Path) -> None:
+    """What else a process has had in its memory does not show in the film."""
+    script = (
+        "import sys, numpy as np\n"
+        "from app.formats import write_video\n"
+        "junk = [bytes([n % 251]) * (1000 * n) for n in range(int(sys.argv[2]))]\n"
+        "del junk\n"
+        "random = np.random.default_rng(1)\n"
+        "back = np.kron(random.integers(40, 200, (12, 20, 3)), np.ones((16, 16, 1)))\n"
+        "noisy = [np.clip(np.roll(back, 2 * t, 1) + random.normal(0, 3, back.shape), 0, 255) for t in range(20)]\n"
+        "write_video(sys.argv[1], [each.astype(np.uint8) for each in noisy], 25)\n"
+    )
+    written = []
+    for junk in (10, 900):
+        target = tmp_path / f"{junk}.mp4"
+        subprocess.run([sys.executable, "-c", script, str(target), str(junk)], check=True)
+        written.append(target.read_bytes())
+    assert written[0] == written[1]
 
 
 def test_working_copy_has_constant_rate(tmp_path: Path) -> None:

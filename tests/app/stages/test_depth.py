@@ -7,6 +7,7 @@ from typing import Any
 
 import attrs
 import numpy as np
+import pytest
 
 from app.actions.backgrounds import false_colour, summary
 from app.model.document import Document
@@ -14,6 +15,9 @@ from app.stages import depth as depth_stages
 from app.stages.depth import in_world, map_in_world
 from app.stages.project import Stages
 from app.stages.results import Masks, World
+from imitation import CameraPath, Cancelled
+from imitation.depth import DepthSolver, background_depth
+from imitation.depth.views import key_frames
 from tests.imitation.depth.scenes import filmed_room
 
 
@@ -37,12 +41,64 @@ def test_without_a_clip_the_stages_say_what_is_missing() -> None:
     assert stages.plate(3).name != stages.plate(4).name
 
 
+CLIP: Any = SimpleNamespace(frame_count=12)
+
+
+def solved(here: Any, world: Any, masks: Masks) -> Any:
+    """Run the stages of depth one after the other, as the runner does."""
+    held = (world.cameras, masks)
+    plan = depth_stages._plan(here, (CLIP, 160), *held)
+    slots = range(depth_stages.slots(CLIP.frame_count))
+    first = [depth_stages._first(here, (CLIP, 160, k), plan, *held) for k in slots]
+    assert [each.frame for each in first if each] == list(plan.keys)
+    second = [depth_stages._second(here, (CLIP, 160, k), plan, *held, *first) for k in slots]
+    return depth_stages._depth(here, (CLIP, 160), plan, *held, *second)
+
+
+def test_one_stage_a_key_frame_gives_what_the_engine_gives_at_once() -> None:
+    """Spread over stages, the maps have the bits of a single call; no clip has more key frames than stages."""
+    world = filmed_room(4, (160, 90), 12)
+    here: Any = Here(world.frames)
+    maps = solved(here, world, Masks.pack(world.masks))
+    whole = background_depth(world.frames, world.cameras, masks=world.masks, longest=160)
+    assert [each.frame for each in maps] == [each.frame for each in whole]
+    for ours, theirs in zip(maps, whole, strict=True):
+        np.testing.assert_array_equal(ours.depth, theirs.depth)
+        np.testing.assert_array_equal(ours.confidence, theirs.confidence)
+    for count in (3, 12, 25, 47, 48, 49, 97, 240, 1000):
+        fast = CameraPath(np.tile(np.eye(3), (count, 1, 1)), np.tile(np.eye(3), (count, 1, 1)),
+                          np.arange(count)[:, None] * np.ones(3))  # fmt: skip
+        assert len(key_frames(fast, 1.0)) <= depth_stages.slots(count)
+
+
+def test_a_pass_looks_up_whether_to_stop_many_times() -> None:
+    """A cancelled pass ends within a few rows, wherever it is; the fractions only rise."""
+    world = filmed_room(4, (160, 90), 12)
+    solver = DepthSolver(world.frames, world.cameras, world.masks)
+    keys = solver.key_frames()
+    seen: list[float] = []
+    first = {frame: solver.first(frame, keys, seen.append) for frame in keys[:2]}
+    assert seen[: len(seen) // 2] == sorted(seen[: len(seen) // 2])
+    assert len(seen) > 2 * 15
+    calls = 0
+
+    def stopping(fraction: float) -> None:
+        nonlocal calls
+        calls += 1
+        if fraction > 0.5:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        solver.second(keys[0], first, stopping)
+    assert calls > 3
+
+
 def test_a_stage_gives_what_the_engine_gives_and_the_world_scales_it() -> None:
     """Depth in the cameras' units, a plate from it, and both in a world of twice the size."""
     world = filmed_room(4, (160, 90), 12)
     here: Any = Here(world.frames)
     masks = Masks.pack(world.masks)
-    maps = depth_stages._depth(here, (None, 160), world.cameras, masks)  # type: ignore[arg-type]
+    maps = solved(here, world, masks)
     assert here.seen[-1] == 1
     assert all(np.isnan(each.depth[world.masks[each.frame]]).all() for each in maps)
     plate = depth_stages._plate(here, (None, maps[1].frame), maps, world.cameras, masks)  # type: ignore[arg-type]

@@ -1,0 +1,39 @@
+"""What of the background may hide a character that stands where the subject stood."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.depth.completion import Plate
+from imitation.errors import InputError
+
+ALIKE = 24.0
+"""Levels, the worst channel, up to which a frame shows what its plate says that the background looks like."""
+SMOOTH = 1.0  # pixels: single noisy pixels do not decide
+
+
+def shown_background(picture: NDArray[np.uint8], plate: Plate) -> NDArray[np.bool_]:
+    """Where a frame (h, w, 3) shows the background: off the subject's mask, and within it where its plate's colour is.
+
+    Masks drawn by hand take in the post that stands before the subject.
+    """
+    import cv2
+
+    if picture.shape != plate.picture.shape:
+        raise InputError(f"The frame is {picture.shape[:2]}, but its plate is {plate.picture.shape[:2]}.")
+    hole = plate.filled | plate.invented
+    smooth = [cv2.GaussianBlur(each, (0, 0), SMOOTH).astype(np.float32) for each in (picture, plate.picture)]
+    alike = np.abs(smooth[0] - smooth[1]).max(axis=-1) < ALIKE
+    shown: NDArray[np.bool_] = ~hole | (plate.filled & alike)
+    return shown
+
+
+def hiding_depth(picture: NDArray[np.uint8], plate: Plate) -> NDArray[np.float32]:
+    """Depth (h, w) of what may hide a character in the subject's place, camera z, NaN elsewhere.
+
+    Depth behind the subject is measured from other frames only and strays; but where the frame itself shows the
+    subject, nothing stands before it, and so nothing stands before who takes its place. A character that stands much
+    farther away than the subject is hidden too little there.
+    """
+    return np.where(shown_background(picture, plate), plate.depth.depth, np.nan).astype(np.float32)

@@ -1,0 +1,103 @@
+"""Characters and their shadows on one transparent sheet, to be laid over a frame or written with its alpha."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import attrs
+import numpy as np
+from numpy.typing import NDArray
+
+from imitation.rendering.mesh import Rendering
+from imitation.rendering.occlusion import visibility
+
+Picture = NDArray[np.uint8]
+SINK = 0.05
+"""Share of a character's radius that it may sink into the background unhidden: feet stand in what depth says."""
+
+
+@attrs.frozen(eq=False)
+class Layer:
+    """What is laid over a frame.
+
+    Attributes
+    ----------
+    rendering : the character.
+    shadow : (h, w) how much of the frame's light it takes, 0 to 1, or None.
+    """
+
+    rendering: Rendering
+    shadow: NDArray[np.float32] | None = None
+
+
+@attrs.frozen(eq=False)
+class Matte:
+    """Layers flattened into one.
+
+    Attributes
+    ----------
+    light : float32 (h, w, 3) sRGB levels multiplied by what covers; shadows are black.
+    alpha : float32 (h, w) what is taken from the frame, by characters and shadows.
+    cover : float32 (h, w) what is taken by characters alone.
+    """
+
+    light: NDArray[np.float32]
+    alpha: NDArray[np.float32]
+    cover: NDArray[np.float32]
+
+    def over(self, frame: Picture) -> Picture:
+        """Lay the sheet over a frame (h, w, 3)."""
+        out = self.light + (1 - self.alpha)[..., None] * frame
+        done: Picture = np.clip(np.rint(out), 0, 255).astype(np.uint8)
+        return done
+
+    def rgba(self) -> Picture:
+        """The sheet as uint8 (h, w, 4), colours not multiplied by alpha; a shadow is black that is partly clear."""
+        made = np.zeros((*self.alpha.shape, 4), np.uint8)
+        there = self.alpha > 1e-6
+        made[there, :3] = np.clip(np.rint(self.light[there] / self.alpha[there, None]), 0, 255)
+        made[..., 3] = np.clip(np.rint(255 * self.alpha), 0, 255)
+        return made
+
+
+def flattened(
+    layers: Sequence[Layer],
+    shape: tuple[int, ...],
+    *,
+    background: NDArray[np.floating] | None = None,
+    tolerance: float = 0.0,
+    soft: bool = False,
+) -> Matte:
+    """Flatten layers, the nearer over the farther, less what the background hides; see ``composite``.
+
+    Parameters
+    ----------
+    shape : (h, w) of the frame.
+    """
+    light = np.zeros((*shape, 3), np.float32)
+    open_share, bare = np.ones(shape, np.float32), np.ones(shape, np.float32)
+    shown = []
+    for layer in layers:
+        if layer.shadow is not None:
+            open_share *= 1 - layer.shadow
+        if background is not None:
+            shown.append(visibility(layer.rendering.depth, background, tolerance, soft=soft))
+    # Farthest first, decided pixel by pixel.
+    depths = np.stack([layer.rendering.depth for layer in layers]) if layers else np.zeros((0, *shape))
+    for place in np.argsort(-depths, axis=0, kind="stable") if len(layers) > 1 else np.zeros((len(layers), 1, 1), int):
+        for index, layer in enumerate(layers):
+            alpha = layer.rendering.rgba[..., 3].astype(np.float32) / 255
+            if len(layers) > 1:
+                alpha = np.where(place == index, alpha, np.float32(0))
+            if background is not None:
+                alpha = alpha * shown[index]
+            light += alpha[..., None] * (layer.rendering.rgba[..., :3] - light)
+            open_share *= 1 - alpha
+            bare *= 1 - alpha
+    return Matte(light, 1 - open_share, 1 - bare)
+
+
+def grained(matte: Matte, sigma: float, seed: int) -> Matte:
+    """The same sheet with noise of ``sigma`` grey levels where characters cover; seeded a frame as ``add_grain``."""
+    noise = np.random.default_rng(seed).standard_normal(matte.light.shape, dtype=np.float32)
+    return attrs.evolve(matte, light=matte.light + np.float32(sigma) * noise * matte.cover[..., None])
