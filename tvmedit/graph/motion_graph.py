@@ -30,7 +30,8 @@ class MotionGraph:
     ----------
     nodes : tuple of Node
     weights : (k, k) float64
-        Cost of the cut from row to column in frame steps of the motions (eq. 12); inf where pruned.
+        Cost of the cut from row to column in frame steps of the motions (eq. 12; "robust": of the median motion); inf
+        where pruned.
     transitions : (k, k, 2) int64
         Last frame played of the row's sequence and first frame played of the column's; -1 on the diagonal.
     complete : (k, k) float64
@@ -107,7 +108,8 @@ def motion_graph(
         {(sequence, cluster): number of the texton}: the user's own representatives; or the nodes themselves as
         (sequence, first, last).
     limit : float, optional
-        "robust": weight at mu = 1, in frame steps of the motions; default: as far as they move in 0.1 s.
+        "robust": weight at mu = 1, in frame steps of the motions; default: as far as the median one
+        moves in 0.1 s.
 
     Returns
     -------
@@ -160,11 +162,12 @@ def _prune(complete: Array, mu: float, method: GraphMethod, limit: float) -> tup
 def _scale(intensities: Array, method: GraphMethod) -> Array:
     """What node distances are measured in: eq. 12 takes the intensity of the motion that is left.
 
-    Out of a wild motion into a calm one any jump would then be cheap; "robust" takes the geometric mean of both.
+    Out of a wild motion into a calm one any jump would then be cheap, and a path that takes it jumps in the end; "robust"
+    takes the median of all motions, so that weights are in proportion to what the body jumps.
     """
     if method == "paper":
         return intensities[:, None]
-    return np.asarray(np.sqrt(intensities[:, None] * intensities))
+    return np.full((1, 1), np.median(intensities))
 
 
 def _check_mu(mu: float) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from imitation.errors import InputError
-from tvmedit.structure.segments import best_period, best_segments, repeat_costs, texton_chain
+from tvmedit.structure.leaving import settle
+from tvmedit.structure.segments import best_period, best_segments, repeat_costs, repeats_within, texton_chain
 from tvmedit.structure.splitting import split_unlike
 from tvmedit.structure.structure import Cluster, Structure, texton_curve
 from tvmedit.structure.warping import SAME_MOTION, texton_difference
@@ -19,6 +20,8 @@ NOVELTY_SHARE = 0.55
 """Lambda, the price of a frame of new motion, as a share of the median atom distance."""
 PENALTY_SECONDS = 0.3
 """A cluster costs as much as so many seconds of new motion."""
+WITHIN = 0.33
+"""Inside a stretch that does not repeat, a cluster costs this share: a motion may repeat for a moment between actions."""
 SHORTEST_PERIOD = 0.5
 LONGEST_PERIOD = 5.0
 STILL = 0.3
@@ -53,6 +56,7 @@ def parse_optimal(
         starts, periods = np.zeros(1, np.int64), np.zeros(1, np.int64)
     elif boundaries is None:
         starts, periods = best_segments(sums, shortest, novelty, penalty, force_cyclic)
+        starts, periods = repeats_within(sums, starts, periods, shortest, novelty, WITHIN * penalty)
     else:
         starts = _given_starts(boundaries, n)
         stops = [*starts[1:], n]
@@ -62,6 +66,7 @@ def parse_optimal(
     if boundaries is None:
         clusters = _merged(atoms, clusters, novelty)
         clusters = [piece for cluster in clusters for piece in split_unlike(atoms, cluster, novelty)]
+        clusters = settle(atoms, clusters, novelty, fps)
     if force_cyclic and (boundaries is not None or len(clusters) == 1):
         clusters = [_one_round(cluster, shortest) for cluster in clusters]
     clusters = _kinds(atoms, clusters, novelty)

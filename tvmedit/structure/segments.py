@@ -21,7 +21,8 @@ LEAST_REPEATS = 1.8
 def repeat_costs(atoms: Atoms, shortest: int, longest: int, limit: float) -> Array:
     """Running sums of what frame t costs as a repeat at period p.
 
-    E_p(t) is the least atom distance to the frames p (1 - 0.12) .. p (1 + 0.12) before it, cut off at ``limit``.
+    E_p(t) is the least atom distance to the frames p (1 - 0.12) .. p (1 + 0.12) before it, cut off at ``limit``; half
+    a frame to either side of each counts too, so that a quick motion repeats as well at few frames a second.
 
     Parameters
     ----------
@@ -37,6 +38,7 @@ def repeat_costs(atoms: Atoms, shortest: int, longest: int, limit: float) -> Arr
     """
     n = len(atoms)
     sums = np.zeros((longest - shortest + 1, n + 1))
+    between = _between_frames(atoms, longest + int(SLACK * longest))
     for row in range(len(sums)):
         period = row + shortest
         slack = int(SLACK * period)
@@ -44,10 +46,37 @@ def repeat_costs(atoms: Atoms, shortest: int, longest: int, limit: float) -> Arr
         for t in range(n):
             cost = limit
             for back in range(max(1, period - slack), min(t, period + slack) + 1):
-                cost = min(cost, atoms[t, t - back])
+                cost = min(cost, between[t, back])
             total += cost
             sums[row, t + 1] = total
     return sums
+
+
+@compiled
+def _between_frames(atoms: Atoms, furthest: int) -> Atoms:
+    """Atom distance of each frame to those 1 .. ``furthest`` before it, (n, furthest + 1), between frames too.
+
+    A frame's distance to the straight way from one earlier frame to the next follows from the three distances between
+    them; each earlier frame gets the least to either side of it.
+    """
+    n = len(atoms)
+    least = np.zeros((n, furthest + 1), np.float32)
+    for t in range(n):
+        for back in range(1, min(t, furthest) + 1):
+            here = atoms[t, t - back] ** 2
+            value = here
+            for side in (-1, 1):
+                other = back + side
+                if other < 1 or other > t:
+                    continue
+                there, step = atoms[t, t - other] ** 2, atoms[t - back, t - other] ** 2
+                if step > 0.0:
+                    share = 0.5 * (1.0 + (here - there) / step)
+                    # Half-way belongs to both, whatever the rounding.
+                    if 0.0 < share < 0.501:
+                        value = min(value, here - share * share * step)
+            least[t, back] = np.sqrt(max(value, 0.0))
+    return least
 
 
 @compiled
@@ -99,6 +128,26 @@ def best_segments(
         b = came[b]
         count += 1
     return starts[:count][::-1].copy(), chosen[:count][::-1].copy()
+
+
+def repeats_within(
+    sums: Array, starts: Frames, periods: Frames, shortest: int, novelty: float, penalty: float
+) -> tuple[Frames, Frames]:
+    """Cut the segments that do not repeat once more, at another penalty, where something inside them does.
+
+    Actions that are done once follow each other at no cost, so a motion repeated for a moment between two of them would
+    have to pay for itself and for the second action. Arguments and result as of ``best_segments``.
+    """
+    stops = [*starts[1:].tolist(), sums.shape[1] - 1]
+    cut = []
+    for first, stop, period in zip(starts.tolist(), stops, periods.tolist(), strict=True):
+        if period or stop - first < LEAST_REPEATS * shortest:
+            cut.append((np.array([first]), np.array([period])))
+            continue
+        inside = np.ascontiguousarray(sums[:, first : stop + 1])
+        within, found = best_segments(inside, shortest, novelty, penalty, False)
+        cut.append((first + within, found))
+    return np.concatenate([part[0] for part in cut]), np.concatenate([part[1] for part in cut])
 
 
 @compiled
