@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -102,7 +104,7 @@ def test_the_cheapest_cut_is_still_the_cheapest() -> None:
 
     starts, _ = best_segments(sums, 3, novelty, penalty, False)
     ends = [*starts.tolist(), 30]
-    found = sum(price(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
+    found = sum(price(a, b) for a, b in itertools.pairwise(ends))
     every = [price(0, 30)] + [price(0, a) + price(a, 30) for a in range(1, 30)]
     every += [price(0, a) + price(a, b) + price(b, 30) for a in range(1, 29) for b in range(a + 1, 30)]
     assert found == pytest.approx(min(every))

@@ -162,8 +162,8 @@ def _prune(complete: Array, mu: float, method: GraphMethod, limit: float) -> tup
 def _scale(intensities: Array, method: GraphMethod) -> Array:
     """What node distances are measured in: eq. 12 takes the intensity of the motion that is left.
 
-    Out of a wild motion into a calm one any jump would then be cheap, and a path that takes it jumps in the end; "robust"
-    takes the median of all motions, so that weights are in proportion to what the body jumps.
+    Out of a wild motion into a calm one any jump would then be cheap, and a path that takes it jumps in the end;
+    "robust" takes the median of all motions, so that weights are in proportion to what the body jumps.
     """
     if method == "paper":
         return intensities[:, None]

@@ -41,7 +41,7 @@ def _away(atoms: NDArray[np.float32], cluster: Cluster, novelty: float) -> NDArr
     """Distance of a rest's frames from its posture; nothing where it is no rest."""
     inside = atoms[cluster.first : cluster.last + 1, cluster.first : cluster.last + 1]
     posture = int(np.argmin(np.median(inside, axis=0)))
-    away = inside[posture]
+    away: NDArray[np.float32] = inside[posture]
     return away if np.median(away) < HELD * novelty else away[:0]
 
 

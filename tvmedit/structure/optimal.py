@@ -21,7 +21,7 @@ NOVELTY_SHARE = 0.55
 PENALTY_SECONDS = 0.3
 """A cluster costs as much as so many seconds of new motion."""
 WITHIN = 0.33
-"""Inside a stretch that does not repeat, a cluster costs this share: a motion may repeat for a moment between actions."""
+"""Within a stretch that does not repeat a cluster costs this share: a motion may repeat briefly between actions."""
 SHORTEST_PERIOD = 0.5
 LONGEST_PERIOD = 5.0
 STILL = 0.3
