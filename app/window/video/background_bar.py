@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QButtonGroup, QFrame, QHBoxLayout, QProgressBar, Q
 
 from app.actions.background_views import Kind
 from app.window import icons, settings
+from app.window.background_state import BackgroundState
 from app.window.controls import Elided, NumberField, NumberRange, button, label, toggle
-from app.window.video.background_state import BackgroundState
 
 KINDS: dict[str, tuple[str, str]] = {
     "depth": ("Depth", "How far the background is away, in false colour"),

@@ -11,13 +11,13 @@ from PySide6.QtCore import QObject, Signal
 from app.actions.background_views import Kind
 from app.actions.session import Session
 from app.window import settings
+from app.window.background_state import background_state, measure, measuring, stop
 from app.window.canvas import as_image
 from app.window.canvas.backdrop import Backdrop, Scale
 from app.window.canvas.gestures import DragGesture
 from app.window.newest_call import NewestCall
 from app.window.project import Project
 from app.window.video.background_bar import KINDS, BackgroundBar
-from app.window.video.background_state import background_state, measure, measuring, stop
 
 if TYPE_CHECKING:
     from imitation.depth import DepthMap

@@ -7,9 +7,9 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.actions.snapping import contact_words
 from app.model.tracks import Track
+from app.window.background_state import background_state
 from app.window.controls import button, icon_button, label
 from app.window.project import Project
-from app.window.video.background_state import background_state
 
 UNPLACED = "not placed yet"
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from app.actions import snapping
 from app.model.edits import contacts
+from app.window.background_state import background_state
 from app.window.canvas import TrackMark
 from app.window.canvas.snap_layer import SnapMark
 from app.window.project import Project
 from app.window.video.background_layers import BackgroundLayers
-from app.window.video.background_state import background_state
 from imitation.errors import NoSolution
 
 ANCHOR = "anchor/"

@@ -8,9 +8,9 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from app.window import icons
+from app.window.background_state import background_state
 from app.window.controls import Elided, button, icon_button, label
 from app.window.project import Project
-from app.window.video.background_state import background_state
 from app.window.video.ground_edits import Fallback
 
 

@@ -384,7 +384,6 @@ class VideoWorkspace(Workspace):
             "next_problem": lambda: self.notes.say(edits_by_mouse.next_problem(project)),
             "propose_contacts": lambda: self._proposed(self.proposals.find(project)),
             "accept_contacts": lambda: self._proposed(self.proposals.accept(project)),
-            "measure_background": lambda: self.background.ask("measure"),
             "snap_contact": lambda: self.say(self.snapping.put_selected(frame, self._marks)),
             "free_contact": lambda: free(project, project.track_id, frame),
             "next_track": project.select_next_track,
