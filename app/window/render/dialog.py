@@ -1,0 +1,140 @@
+"""The dialog: films, comparisons and motions, each on a page; it stays open beside the window."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QEvent, QTimer, Signal
+from PySide6.QtGui import QCloseEvent, QKeyEvent, Qt
+from PySide6.QtWidgets import QButtonGroup, QDialog, QHBoxLayout, QStackedWidget, QToolButton, QVBoxLayout, QWidget
+
+from app.window import icons, settings
+from app.window.project import Project
+from app.window.render.film_page import FilmPage
+from app.window.render.motion_page import ComparePage, MotionPage
+
+if TYPE_CHECKING:
+    from app.window.shell import Shell
+
+PAGES = (("film", "Film", "render"), ("compare", "Comparison", "wipe"), ("motion", "Motion", "export"))
+SOON = 40
+
+
+class RenderDialog(QDialog):
+    """Belongs to one project and closes with it; work goes on when it is closed. ``asked`` names a command."""
+
+    asked = Signal(str)
+
+    def __init__(self, project: Project, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.project = project
+        self.setWindowTitle("Render and export")
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setMinimumSize(860, 560)
+        self.resize(1120, 720)
+        geometry = settings.settings().value("render/geometry")
+        if geometry is not None:
+            self.restoreGeometry(geometry)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        self.film, self.compare, self.motion = FilmPage(project), ComparePage(project), MotionPage(project)
+        self.stack = QStackedWidget()
+        self.tabs: dict[str, QToolButton] = {}
+        column.addLayout(self._tabs())
+        column.addWidget(self.stack, 1)
+        self.film.asked.connect(self._asked)
+        self._later = QTimer(self)
+        self._later.setSingleShot(True)
+        self._later.setInterval(SOON)
+        self._later.timeout.connect(self.refresh)
+        for signal in (
+            project.document_changed,
+            project.frame_changed,
+            project.stage_finished,
+            project.work_changed,
+        ):
+            signal.connect(self._soon)
+        project.closing.connect(self.close)
+        self.show_page("film")
+
+    def _tabs(self) -> QHBoxLayout:
+        row = QHBoxLayout()
+        row.setContentsMargins(12, 10, 12, 0)
+        row.setSpacing(4)
+        group = QButtonGroup(self)
+        for page, (name, text, icon) in zip((self.film, self.compare, self.motion), PAGES, strict=True):
+            tab = QToolButton()
+            tab.setProperty("tab", "true")
+            tab.setIcon(icons.icon(icon))
+            tab.setText(text)
+            tab.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+            tab.setCheckable(True)
+            tab.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            tab.clicked.connect(lambda _=False, name=name: self.show_page(name))
+            group.addButton(tab)
+            self.tabs[name] = tab
+            row.addWidget(tab)
+            self.stack.addWidget(page)
+        row.addStretch(1)
+        return row
+
+    def show_page(self, name: str) -> None:
+        """Bring a page into sight."""
+        self.tabs[name].setChecked(True)
+        self.stack.setCurrentIndex([page for page, *_ in PAGES].index(name))
+        self.refresh()
+
+    def _soon(self, *_: object) -> None:
+        self._later.start()
+
+    def refresh(self) -> None:
+        """Show the project as it is on the page in sight."""
+        page = self.stack.currentWidget()
+        assert isinstance(page, FilmPage | ComparePage | MotionPage)
+        page.refresh()
+
+    def _asked(self, command: str) -> None:
+        self.asked.emit("measure_background" if command == "measure" else command)
+
+    def event(self, event: QEvent) -> bool:
+        """Keep Escape for closing the dialog."""
+        escape = isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape
+        if event.type() == QEvent.Type.ShortcutOverride and escape:
+            event.accept()
+            return True
+        return super().event(event)
+
+    def reject(self) -> None:
+        """Close, as by the window's own button."""
+        self.close()
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        """End what only the dialog needs."""
+        self._later.stop()
+        settings.settings().setValue("render/geometry", self.saveGeometry())
+        for signal in (
+            self.project.document_changed,
+            self.project.frame_changed,
+            self.project.stage_finished,
+            self.project.work_changed,
+        ):
+            signal.disconnect(self._soon)
+        self.film.close_calls()
+        event.accept()
+
+
+def open_render(shell: Shell, page: str = "film") -> RenderDialog | None:
+    """Show the dialog of the open project, on a page."""
+    project = shell.project
+    if project is None:
+        return None
+    known = [each for each in shell.findChildren(RenderDialog) if each.isVisible()]
+    dialog = known[0] if known else RenderDialog(project, shell)
+    if not known:
+        dialog.asked.connect(shell.do)
+    dialog.show_page(page)
+    dialog.show()
+    dialog.raise_()
+    dialog.activateWindow()
+    return dialog
