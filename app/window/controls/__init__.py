@@ -1,6 +1,7 @@
 """Base controls of the window."""
 
 from app.window.controls.buttons import button, icon_button, renew_tooltips, set_tooltip, toggle, tool
+from app.window.controls.chooser import Chooser
 from app.window.controls.error_bar import ErrorBar
 from app.window.controls.labels import Chip, Elided, Header, Row, label, separator
 from app.window.controls.number import NumberField, NumberRange
@@ -9,6 +10,7 @@ from app.window.controls.swatches import Meter, Swatches
 
 __all__ = [
     "Chip",
+    "Chooser",
     "Elided",
     "ErrorBar",
     "Header",

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QDialog,
     QFileDialog,
     QHBoxLayout,
@@ -21,7 +20,7 @@ from PySide6.QtWidgets import (
 from app.stages.job import Job
 from app.window import settings
 from app.window.background_call import BackgroundCalls
-from app.window.controls import ErrorBar, NumberField, NumberRange, Row, button, icon_button, label, separator
+from app.window.controls import Chooser, ErrorBar, NumberField, NumberRange, Row, button, icon_button, label, separator
 from app.window.performance.state import PerformanceState
 
 if TYPE_CHECKING:
@@ -76,10 +75,7 @@ class ExportDialog(QDialog):
         column = QVBoxLayout(body)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
-        self.form = QComboBox()
-        self.form.setAccessibleName("Form")
-        for _, text, _ in FORMS:
-            self.form.addItem(text)
+        self.form = Chooser((text for _, text, _ in FORMS), "Form")
         self.form.activated.connect(self._chose_form)
         column.addWidget(Row("Form", self.form))
         self.why = label("", "caption")
@@ -116,10 +112,7 @@ class ExportDialog(QDialog):
         self.as_seen = button("As in the preview", self._take_azimuth)
         self.as_seen.setEnabled(self._azimuth is not None)
         self.turntable = QCheckBox("Once round")
-        self.size = QComboBox()
-        self.size.setAccessibleName("Size of the picture")
-        for width, height in SIZES:
-            self.size.addItem(f"{width} × {height}")
+        self.size = Chooser((f"{width} × {height}" for width, height in SIZES), "Size of the picture")
         self.marks = QCheckBox("Name motions and cuts")
         column.addWidget(Row("Seen from", self.angle, self.as_seen))
         column.addWidget(Row("Size", self.size))

@@ -58,6 +58,21 @@ class Card:
         return BASE + LINE * len(self.warnings) + (4 if self.warnings else 0)
 
 
+class NameField(QLineEdit):
+    """A name that is typed; Escape leaves it as it was."""
+
+    given_up = Signal()
+
+    def event(self, event: QEvent) -> bool:
+        """Keep Escape from the window."""
+        if isinstance(event, QKeyEvent) and event.key() == Qt.Key.Key_Escape:
+            if event.type() == QEvent.Type.KeyPress:
+                self.given_up.emit()
+            event.accept()
+            return True
+        return super().event(event)
+
+
 class SequenceCards(QWidget):
     """Cards to choose from; Up and Down choose, Return plays, F4 renames, Delete removes."""
 
@@ -73,7 +88,7 @@ class SequenceCards(QWidget):
         self.pictures: dict[str, QImage] = {}
         self.selected = ""
         self._hover = ""
-        self.field: QLineEdit | None = None
+        self.field: NameField | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMouseTracking(True)
         self.setAccessibleName("Sequences")
@@ -178,12 +193,13 @@ class SequenceCards(QWidget):
         card = next((each for each in self.cards if each.id == sequence_id), None)
         if card is None:
             return
-        field = self.field = QLineEdit(card.name, self)
+        field = self.field = NameField(card.name, self)
         field.setAccessibleName("Name of the sequence")
         top = self.box(sequence_id).top()
         field.setGeometry(LEFT - 9, round(top) + 3, self.width() - LEFT + 3, 28)
         field.selectAll()
         field.returnPressed.connect(lambda: self._take_name(sequence_id))
+        field.given_up.connect(self.end_renaming)
         field.editingFinished.connect(lambda: self._take_name(sequence_id))
         field.show()
         field.setFocus(Qt.FocusReason.OtherFocusReason)

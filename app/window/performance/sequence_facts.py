@@ -6,11 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence
-from app.window.controls import NumberField, NumberRange, Row, button, icon_button, label
+from app.window.controls import Chooser, NumberField, NumberRange, Row, button, icon_button, label
 from app.window.performance.state import PerformanceState
 
 RATE = NumberRange(0.1, 1000.0, 0.1, 2, "fps")
@@ -38,16 +38,10 @@ class SequenceFacts(QWidget):
         self.rate.changed.connect(lambda value: self._say(source_fps=value))
         self.rate.setAccessibleName("Frame rate of the files")
         column.addWidget(self._guessed("fps", "Filmed at", self.rate))
-        self.up = QComboBox()
-        self.up.addItems(["Y up", "Z up"])
-        narrow(self.up)
-        self.up.setAccessibleName("Axis that points up")
+        self.up = Chooser(["Y up", "Z up"], "Axis that points up")
         self.up.activated.connect(lambda index: self._say(up="yz"[index]))
         column.addWidget(self._guessed("up", "Axes", self.up))
-        self.unit = QComboBox()
-        self.unit.addItems([name for name, _ in UNITS] + [OTHER])
-        narrow(self.unit)
-        self.unit.setAccessibleName("Unit of the files")
+        self.unit = Chooser([*(name for name, _ in UNITS), OTHER], "Unit of the files")
         self.unit.activated.connect(self._chose_unit)
         self.metres = NumberField(METRES)
         self.metres.setAccessibleName("Metres in one unit")
@@ -176,12 +170,6 @@ def statistics_lines(sequence: CapturedSequence, statistics: Any) -> list[str]:
     dress = "pictures" if statistics.textured else "colours" if statistics.coloured else "no colours"
     lines.append(f"{statistics.height:.2f} m tall, {dress}")
     return lines
-
-
-def narrow(box: QComboBox) -> None:
-    """Let a chooser be narrower than its longest text."""
-    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-    box.setMinimumContentsLength(5)
 
 
 def _line(*controls: QWidget) -> QWidget:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QCheckBox, QComboBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence
-from app.window.controls import NumberField, NumberRange, Row, button, label
-from app.window.performance.sequence_facts import narrow
+from app.window.controls import Chooser, NumberField, NumberRange, Row, button, label
 from app.window.performance.state import PerformanceState
 from app.window.performance.strip_colours import structure_of
 
@@ -30,11 +29,8 @@ class SequenceStructure(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(6)
-        self.method = QComboBox()
-        self.method.addItems([text for _, text in METHODS])
-        narrow(self.method)
+        self.method = Chooser([text for _, text in METHODS], "Method")
         self.method.setToolTip("Cut the whole sequence at once, or frame by frame as the paper prints it")
-        self.method.setAccessibleName("Method")
         self.method.activated.connect(lambda index: self._change(method=METHODS[index][0]))
         column.addWidget(Row("Method", self.method, width=WIDE))
         self.sensitivity = NumberField(SENSITIVITY)
