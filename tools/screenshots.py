@@ -216,7 +216,7 @@ def _character(shell: Shell, camera: Camera) -> None:
     shown = shell.character.motion.vertices(shell.character.frame)
     if shown is not None and shell.character.posing is not None:
         x, y, z = (float(value) for value in shown[vertex])
-        shell.character._pose(vertex, (x, y, z + 0.12), True)
+        shell.character.events.pose(vertex, (x, y, z + 0.12), True)
         camera.live(90, lambda: bool(project.document.character(character.id).edits))
         camera.live(90, lambda: _quiet(shell))
         shell.do("ghosts")

@@ -170,3 +170,13 @@ def _depth_of(world: World, pixel: tuple[float, float]) -> float:
 def _triple(values: ArrayLike) -> tuple[float, float, float]:
     x, y, z = (float(value) for value in np.asarray(values))
     return x, y, z
+
+
+def tried(vertices: Array, now: Alignment, wanted: Alignment) -> Array:
+    """Vertices (v, 3) that stand by the alignment ``now``, as they would by another one that differs in its numbers."""
+    from scipy.spatial.transform import Rotation
+
+    before, after = (Rotation.from_euler("xyz", each.rotation, degrees=True) for each in (now, wanted))
+    shift = np.subtract(wanted.translation, now.translation)
+    turn = (after * before.inv()).as_rotvec()
+    return stood(vertices, vertices.mean(axis=0), shift=shift, turn=turn, scale=wanted.scale / now.scale)

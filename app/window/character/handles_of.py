@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
 from app.model.character import Character
+from app.model.tracks import Track
 from app.window import theme
 from app.window.project import Project
 from app.window.viewport import Handle
+
+Array = NDArray[np.float64]
 
 
 def control_vertices(character: Character) -> set[int]:
@@ -24,13 +29,34 @@ def vertex_title(project: Project, character: Character, vertex: int) -> str:
     return f"vertex {vertex:,}"
 
 
-def handles(
-    project: Project, character: Character, vertices: NDArray[np.float64], before: NDArray[np.float64] | None
-) -> list[Handle]:
-    """The handles in the frame shown; ``before`` is the pose before the drag under way."""
-    frame = project.frame
+def kind_of(character: Character, frame: int, vertex: int, track: Track | None) -> str:
+    """What a vertex is in a frame, as ``Handle`` names it."""
     edit = character.edits.get(frame)
-    moved = {vertex for vertex, move in edit.moves.items() if not move.muted} if edit else set()
+    move = edit.moves.get(vertex) if edit is not None else None
+    if move is not None and not move.muted:
+        return "edited ray" if move.on_ray else "edited"
+    if track is None:
+        return "plain"
+    return "anchor" if any(frame in contact.span for contact in track.contacts) else "ray"
+
+
+def handles(
+    project: Project,
+    character: Character,
+    vertices: Array,
+    before: Array | None,
+    *,
+    unedited: Array | None = None,
+    away: Mapping[int, float] | None = None,
+    limit: float = np.inf,
+    metric: bool = True,
+) -> list[Handle]:
+    """The handles in the frame shown.
+
+    before : (v, 3) the pose before the drag under way. unedited : (v, 3) the frame without its edit.
+    away : vertex -> pixels from its point; over the limit it is marked. metric : whether the world is in metres.
+    """
+    frame = project.frame
     tracks = {vertex: project.document.track(track_id) for track_id, vertex in character.pairs.items()}
     made = []
     wanted = set(tracks) | control_vertices(character) | ({project.vertex} if project.vertex >= 0 else set())
@@ -38,24 +64,30 @@ def handles(
     for vertex in sorted(wanted):
         if vertex >= len(vertices):
             continue
-        track = tracks.get(vertex)
-        planted = track is not None and any(frame in contact.span for contact in track.contacts)
-        kind = "edited" if vertex in moved else "anchor" if planted else "ray" if track is not None else "plain"
-        x, y, z = (float(value) for value in vertices[vertex])
-        selected = vertex == project.vertex
+        track, selected = tracks.get(vertex), vertex == project.vertex
+        kind = kind_of(character, frame, vertex, track)
         old = before[vertex] if before is not None and selected else None
+        if old is None and unedited is not None and kind.startswith("edited"):
+            old = unedited[vertex]
         title = vertex_title(project, character, vertex)
         if old is not None:
-            title += f"  {100 * float(np.linalg.norm(vertices[vertex] - old)):+.1f} cm"
+            moved = float(np.linalg.norm(vertices[vertex] - old))
+            title += f"  {100 * moved:+.1f} cm" if metric else f"  {moved:+.2g} units"
         made.append(
             Handle(
                 vertex,
                 title,
-                (x, y, z),
+                _triple(vertices[vertex]),
                 kind,
                 look[track.colour % len(look)] if track is not None else "accent",
                 selected,
-                before=None if old is None else (float(old[0]), float(old[1]), float(old[2])),
+                warning=away is not None and away.get(vertex, 0.0) > limit,
+                before=None if old is None else _triple(old),
             )
         )
     return made
+
+
+def _triple(place: Array) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in place)
+    return x, y, z

@@ -8,14 +8,26 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QImage, QPainter
-from PySide6.QtWidgets import QButtonGroup, QSlider, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, Signal
+from PySide6.QtGui import QImage, QPainter, QResizeEvent
 
+from app.actions.heat import Heat
 from app.window.background_call import BackgroundCalls
-from app.window.controls import ErrorBar, Panel, icon_button, label, toggle
+from app.window.character.empty import Empty
+from app.window.character.ghosts import paint_ghosts
+from app.window.character.mesh_header import MeshHeader
+from app.window.character.overlays import (
+    Trail,
+    paint_camera,
+    paint_heat_legend,
+    paint_legend,
+    paint_points,
+    paint_trails,
+)
+from app.window.character.panes import SPLIT, Pane, Panes
+from app.window.controls import ErrorBar, Panel
 from app.window.picture_notes import PictureNotes
-from app.window.viewport import Handle, Viewport
+from app.window.viewport import Gizmo, Handle, Viewport
 from app.window.viewport.hosts import Choice
 from app.window.viewport.lens import Lens
 from app.window.work import details
@@ -23,66 +35,68 @@ from imitation.geometry import Camera
 
 LIBRARIES = "app.window.viewport.scene"
 """The module whose loading loads the 3D libraries."""
-LOOKS = (
-    ("orbit", "Orbit", "orbit", "3"),
-    ("camera", "Camera", "camera", "1"),
-    ("side", "Side", "side", "2"),
-)
+Array = NDArray[np.float64]
 
 
 class MeshView(Panel):
-    """Holds the viewport, which is made when it is first shown, because the 3D libraries load slowly."""
+    """Holds the viewports, which are made when they are first shown, because the 3D libraries load slowly."""
 
     happened = Signal(object)
+    pointed = Signal(int)
     made = Signal()
     loaded = Signal()
+    wanted = Signal(str)
 
     def __init__(self, choice: Choice) -> None:
         super().__init__("Character", " ")
-        self.choice = choice
-        self.viewport: Viewport | None = None
         self._calls = BackgroundCalls(self)
         self._loading = False
-        self.ghosts: Callable[[], Sequence[tuple[int, NDArray[np.float64]]]] = tuple
+        self.ghosts: Callable[[], Sequence[tuple[int, Array]]] = tuple
+        self.trails: Callable[[bool], Sequence[Trail]] = lambda film: ()
         self.calm: Callable[[], bool] = lambda: True
+        self.heat: Heat | None = None
         self._mesh: tuple[int, int] = (0, 0)
         self._ground: tuple[float, ...] = ()
+        self._scene: tuple[Array, Array, float] | None = None
+        self._background: tuple[Array, NDArray[np.int32], NDArray[np.uint8]] | None = None
         self._faced = False
-        bar = self.header.row
-        self.looks = QButtonGroup(self)
-        self.look_buttons = {}
-        for name, text, icon, key in LOOKS:
-            each = toggle(icon, text, lambda on, name=name: self.look(name) if on else None, key=key)
-            self.looks.addButton(each)
-            self.look_buttons[name] = each
-            bar.addWidget(each)
-        self.opacity = QSlider(Qt.Orientation.Horizontal)
-        self.opacity.setRange(10, 100)
-        self.opacity.setValue(100)
-        self.opacity.setFixedWidth(72)
-        self.opacity.setToolTip("How solid the character is over the video")
-        self.opacity.setAccessibleName("Opacity of the character")
-        self.opacity.valueChanged.connect(self._fade)
-        self.ghost_button = toggle("ghosts", "Ghosts", lambda on: self._over(), key="G")
-        self.points_button = toggle("grid", "Scene", self._show_scene, on=True)
-        self.points_button.setToolTip("Background points, the camera's path and the ground")
-        for each in (self.ghost_button, self.points_button):
-            each.setAccessibleName(each.text())
-            each.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
-        for widget in (self.ghost_button, self.points_button, self.opacity):
-            bar.addWidget(widget)
-        bar.addWidget(icon_button("fit", "Show everything", self.fit, "F"))
+        self.bar = MeshHeader()
+        self.header.row.addWidget(self.bar)
+        self.look_buttons, self.opacity = self.bar.look_buttons, self.bar.opacity
+        self.ghost_button, self.split_button = self.bar.ghost_button, self.bar.split_button
+        self.bar.looked.connect(self.look)
+        self.bar.faded.connect(self._fade)
+        self.bar.ghosted.connect(lambda _: self._over())
+        self.bar.parted.connect(self.part)
+        self.bar.layer.connect(self._layer)
+        self.bar.fitted.connect(self.fit)
         self.errors = ErrorBar()
         self.column.addWidget(self.errors)
-        self.place = QWidget()
-        self._inner = QVBoxLayout(self.place)
-        self._inner.setContentsMargins(0, 0, 0, 0)
-        self.waiting = label("Loading the 3D view…", "caption")
-        self.waiting.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._inner.addWidget(self.waiting)
-        self.column.addWidget(self.place, 1)
-        self.notes: PictureNotes | None = None
+        self.panes = Panes(choice)
+        self.waiting = self.panes.waiting
+        self.empty = Empty()
+        self.empty.wanted.connect(self.wanted)
+        self.column.addWidget(self.empty, 1)
+        self.column.addWidget(self.panes, 1)
+        self.empty.hide()
+        self.panes.happened.connect(self.happened)
+        self.panes.hovered.connect(self.pointed)
         self.look_buttons["orbit"].setChecked(True)
+
+    @property
+    def viewport(self) -> Viewport | None:
+        """The main view, once there is one."""
+        return self.panes.main.view if self.panes.main is not None else None
+
+    @property
+    def notes(self) -> PictureNotes | None:
+        """The notes over the main view."""
+        return self.panes.main.notes if self.panes.main is not None else None
+
+    @property
+    def looking(self) -> str:
+        """How one looks: "orbit", "camera" or "side"."""
+        return next(name for name, each in self.look_buttons.items() if each.isChecked())
 
     def ready(self) -> bool:
         """Whether the viewport can be made at once; else the 3D libraries are loaded, and ``loaded`` says when."""
@@ -98,56 +112,151 @@ class MeshView(Panel):
         self.waiting.setText("The 3D view cannot be loaded.")
         self.errors.tell(f"The 3D view cannot be loaded: {error}", details(error))
 
-    def make(self) -> Viewport:
-        """Give the viewport, made now where there is none yet."""
-        if self.viewport is None:
-            self.viewport = Viewport(self.choice)
-            self.waiting.hide()
-            self._inner.addWidget(self.viewport)
-            self.viewport.happened.connect(self.happened)
-            self.viewport.notes = (self._paint_ghosts,)
-            self.viewport.calm = lambda: self.calm()
-            self.notes = PictureNotes(self.viewport)
-            self.notes.raise_()
-            self.made.emit()
-        return self.viewport
+    def make(self, kind: str = "main") -> Pane:
+        """Give a pane, made now where there is none yet."""
+        fresh = kind not in self.panes.panes
+        pane = self.panes.make(kind)
+        if fresh:
+            self._equip(pane)
+            if kind == "main":
+                self.made.emit()
+        return pane
+
+    def _equip(self, pane: Pane) -> None:
+        """Give a new pane what all share: layers, overlays, opacity."""
+        view = pane.view
+        view.calm = lambda: self.calm()
+        view.layers = self.bar.layers
+        view.mesh_opacity = self.opacity.value() / 100
+        if pane.own:
+            view.notes = (
+                self._paint_ghosts,
+                lambda painter, lens: self._paint_trails(painter, lens, view),
+                lambda painter, lens: self._paint_legends(painter, lens, pane),
+            )
+        if self._background is not None:
+            view.scene.set_background(*self._background)
+        if self._scene is not None:
+            self._lay(pane)
+        view.show_layers()
+
+    # looking -----------------------------------------------------------------------------------------------------
 
     def look(self, name: str) -> None:
         """Orbit, look through the camera or from its side."""
         self.look_buttons[name].setChecked(True)
-        self.opacity.setEnabled(name == "camera")
+        self.opacity.setEnabled(name == "camera" or SPLIT in self.panes.panes)
         if self.viewport is not None:
             self.viewport.look(name)  # type: ignore[arg-type]
+            self.bar.over_film = self.viewport.through_camera
+            self.panes.follow()
+
+    def part(self, on: bool) -> None:
+        """Show camera and side at once, or the main view alone."""
+        self.split_button.blockSignals(True)
+        self.split_button.setChecked(on)
+        self.split_button.blockSignals(False)
+        main = self.viewport
+        if main is None:
+            return
+        others = [pane.kind for pane in self.panes.compared]
+        if on:
+            self.look("camera" if main.camera is not None else "orbit")
+        self.show_panes([SPLIT, *others] if on else others)
+        if on:
+            view = self.panes.panes[SPLIT].view
+            view.show_mesh(main.vertices, main.faces, self._colours)
+            view.show_handles(main.handles)
+            view.show_gizmo(main.gizmo)
+            view.camera, view.picture = main.camera, main.picture
+            view.look("side")
+            view.fit()
+            self.panes.panes[SPLIT].notes.show_right("from the side")
+
+    def show_panes(self, kinds: list[str]) -> None:
+        """Show these panes beside the main one."""
+        known = set(self.panes.panes)
+        self.panes.want(kinds)
+        for kind, pane in self.panes.panes.items():
+            if kind not in known:
+                self._equip(pane)
+        self.panes.follow()
+        self.changed_size()
 
     def fit(self) -> None:
         """Show everything."""
-        if self.viewport is not None:
-            self.viewport.fit()
+        for pane in self.panes.own:
+            pane.view.fit()
+        self.panes.follow()
 
-    def show_mesh(
-        self, vertices: NDArray[np.float64], faces: NDArray[np.int32], colours: NDArray[np.uint8] | None
-    ) -> None:
+    def changed_size(self) -> None:
+        """Fit the buttons into the header."""
+        self.bar.fit_width(self.width() - 40)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Fit the buttons into the header."""
+        super().resizeEvent(event)
+        self.changed_size()
+
+    # what is shown -----------------------------------------------------------------------------------------------
+
+    def show_mesh(self, vertices: Array, faces: NDArray[np.int32], colours: NDArray[np.uint8] | None) -> None:
         """Show a pose; the mesh is made anew only where it is another one."""
-        viewport = self.make()
+        self.make()
+        self._show_empty(False)
+        self._colours = colours
         mesh = (id(faces), len(vertices))
-        if mesh != self._mesh:
-            self._mesh = mesh
-            self._faces = faces
-            viewport.show_mesh(vertices, faces, colours)
-            viewport.fit()
+        for pane in self.panes.own:
+            if mesh != self._mesh:
+                pane.view.show_mesh(vertices, faces, colours)
+                pane.view.fit()
+            else:
+                pane.view.move_mesh(vertices)
+        self._mesh, self._faces = mesh, faces
+
+    def move_mesh(self, vertices: Array) -> None:
+        """Show the pose that follows the mouse."""
+        for pane in self.panes.own:
+            pane.view.move_mesh(vertices)
+
+    def show_compared(
+        self, kind: str, vertices: Array | None, faces: NDArray[np.int32], colours: object, title: str, token: str
+    ) -> None:
+        """Show a pose in a pane that compares, with what it is."""
+        pane = self.panes.panes.get(kind)
+        if pane is None:
+            return
+        pane.notes.show_right(title, token)
+        if vertices is None:
+            pane.view.clear_mesh()
+            pane.faces = None
+        elif pane.faces is not faces or len(pane.view.vertices) != len(vertices):
+            pane.view.show_mesh(vertices, faces, colours)  # type: ignore[arg-type]
+            pane.faces = faces
         else:
-            viewport.move_mesh(vertices)
+            pane.view.move_mesh(vertices)
 
     def clear(self) -> None:
         """Show no mesh."""
         self._mesh, self._faced = (0, 0), False
-        if self.viewport is not None:
-            self.viewport.clear_mesh()
+        for pane in self.panes.panes.values():
+            pane.view.clear_mesh()
+            pane.view.show_handles(())
+            pane.view.show_gizmo(None)
 
-    def show_scene(self, points: NDArray[np.float64], centres: NDArray[np.float64], ground: float) -> None:
+    def show_empty(self, characters: bool, tracks: bool) -> None:
+        """Say what is missing before anything can be shown."""
+        self.empty.show_missing(characters, tracks)
+        self._show_empty(not characters)
+
+    def _show_empty(self, on: bool) -> None:
+        self.empty.setVisible(on)
+        self.panes.setVisible(not on)
+
+    def show_scene(self, points: Array, centres: Array, ground: float) -> None:
         """Show the background of the character: points, the camera's path, the ground's height."""
-        viewport = self.make()
-        extent = viewport.scene.extent
+        main = self.make()
+        extent = main.view.scene.extent
         middle = extent.mean(0)
         radius = 2.2 * float(np.linalg.norm(extent[1] - extent[0]))
         signature = (float(len(points)), float(len(centres)), ground, *np.round(middle, 1).tolist(), round(radius, 1))
@@ -155,47 +264,122 @@ class MeshView(Panel):
             return
         self._ground = signature
         near = np.linalg.norm(points - middle, axis=1) < 4 * radius if len(points) else np.zeros(0, bool)
-        viewport.scene.set_points(points[near])
-        viewport.scene.set_camera_path(centres)
-        viewport.scene.set_ground(middle[:2], radius, ground)
-        viewport.redraw()
+        self._scene = (points[near], centres, ground)
+        for pane in self.panes.panes.values():
+            self._lay(pane)
+
+    def _lay(self, pane: Pane) -> None:
+        assert self._scene is not None
+        assert self.panes.main is not None
+        points, centres, ground = self._scene
+        extent = self.panes.main.view.scene.extent
+        radius = 2.2 * float(np.linalg.norm(extent[1] - extent[0]))
+        pane.view.scene.set_points(points)
+        pane.view.scene.set_camera_path(centres)
+        pane.view.scene.set_ground(extent.mean(0)[:2], radius, ground)
+        pane.view.redraw()
+
+    def show_background(self, mesh: tuple[Array, NDArray[np.int32], NDArray[np.uint8]] | None) -> None:
+        """Show the measured background, or none."""
+        self._background = mesh
+        nothing = (np.zeros((0, 3)), np.zeros((0, 3), np.int32), np.zeros((0, 3), np.uint8))
+        for pane in self.panes.panes.values():
+            pane.view.scene.set_background(*(mesh or nothing))
+            pane.view.redraw()
 
     def show_camera(self, camera: Camera | None, picture: QImage | None) -> None:
         """Take the camera and the picture of the frame."""
-        if self.viewport is not None:
-            self.viewport.show_camera(camera, picture)
+        for pane in self.panes.panes.values():
+            pane.view.show_camera(camera, picture)
+        main = self.viewport
+        if main is not None:
             if camera is not None and not self._faced:
                 self._faced = True
-                self.viewport.orbit_from(camera)
+                main.orbit_from(camera)
+            self.bar.over_film = main.through_camera
         self.look_buttons["camera"].setEnabled(camera is not None)
         self.look_buttons["side"].setEnabled(camera is not None)
 
     def show_handles(self, handles: Sequence[Handle]) -> None:
         """Show handles."""
-        if self.viewport is not None:
-            self.viewport.show_handles(handles)
+        for pane in self.panes.own:
+            pane.view.show_handles(handles)
+
+    def show_gizmo(self, gizmo: Gizmo | None) -> None:
+        """Show what places the character, or nothing."""
+        for pane in self.panes.own:
+            pane.view.show_gizmo(gizmo)
+
+    def show_heat(self, heat: Heat | None) -> None:
+        """Colour the mesh, or give it its own colours."""
+        self.heat = heat
+        for pane in self.panes.own:
+            if heat is None or len(heat.colours) == len(pane.view.vertices):
+                pane.view.paint(None if heat is None else heat.colours)
+            pane.view.surface.update()
+
+    def highlight(self, vertex: int) -> None:
+        """Light a vertex that is pointed at elsewhere, -1 for none."""
+        for pane in self.panes.own:
+            pane.view.highlight(vertex)
+
+    def allow_grabbing(self, on: bool) -> None:
+        """Let vertices be taken, or not."""
+        for pane in self.panes.own:
+            pane.view.grabbing = on
+
+    @property
+    def dragging(self) -> bool:
+        """Whether something is held in a view."""
+        return any(pane.view.dragging for pane in self.panes.own)
+
+    def cancel(self) -> bool:
+        """Give up the drag under way in any view; says whether there was one."""
+        return any(pane.view.cancel() for pane in self.panes.own)
 
     def _fade(self, value: int) -> None:
-        if self.viewport is not None:
-            self.viewport.mesh_opacity = value / 100
-            self.viewport.redraw()
+        for pane in self.panes.panes.values():
+            pane.view.mesh_opacity = value / 100
+            pane.view.redraw()
 
-    def _show_scene(self, on: bool) -> None:
-        if self.viewport is not None:
-            [self.viewport.show_layer(name, on) for name in ("points", "path", "ground")]
+    def _layer(self, name: str, on: bool) -> None:
+        self.bar.layers.switch(name, on, over_film=self.bar.over_film)
+        for pane in self.panes.panes.values():
+            pane.view.show_layers()
 
     def _over(self) -> None:
-        if self.viewport is not None:
-            self.viewport.surface.update()
+        for pane in self.panes.own:
+            pane.view.surface.update()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Paint the overlays in another look."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.StyleChange and hasattr(self, "panes"):
+            self._over()
+
+    # painting over -----------------------------------------------------------------------------------------------
 
     def _paint_ghosts(self, painter: QPainter, lens: Lens) -> None:
         if self.ghost_button.isChecked():
-            from app.window.character.ghosts import paint_ghosts
-
             paint_ghosts(painter, lens, self.ghosts())
 
+    def _paint_trails(self, painter: QPainter, lens: Lens, view: Viewport) -> None:
+        if view.shows("tracks"):
+            if view.through_camera:
+                paint_points(painter, self.trails(True), view.view.scale, view.view.x, view.view.y)
+            else:
+                paint_trails(painter, lens, self.trails(False))
+        if view.shows("path") and not view.through_camera and view.camera is not None and view.picture is not None:
+            reach = 0.25 * float(np.linalg.norm(view.scene.extent[1] - view.scene.extent[0]))
+            paint_camera(painter, lens, view.camera, (view.picture.width(), view.picture.height()), reach)
+
+    def _paint_legends(self, painter: QPainter, lens: Lens, pane: Pane) -> None:
+        if pane.view.gizmo is None and pane.kind == "main" and pane.view.handles:
+            paint_legend(painter, lens, ghosts=self.ghost_button.isChecked())
+        if self.heat is not None:
+            paint_heat_legend(painter, lens, self.heat)
+
     def finish(self) -> None:
-        """Close the render window."""
+        """Close the render windows."""
         self._calls.close()
-        if self.viewport is not None:
-            self.viewport.finish()
+        self.panes.finish()

@@ -7,7 +7,7 @@ from PySide6.QtGui import QImage
 
 from app.window.canvas import Canvas
 from app.window.canvas.gestures import Chosen, DragGesture, Gesture
-from app.window.controls import Panel, icon_button, toggle
+from app.window.controls import Panel, icon_button, set_tooltip, toggle
 from app.window.frames import FrameLoader
 from app.window.picture_layers import Shown, layers, track_at, track_marks
 from app.window.picture_notes import PictureNotes
@@ -16,9 +16,14 @@ from app.window.reading import Reading
 
 
 class TrackView(Panel):
-    """A picture in which tracks are chosen but not changed."""
+    """A picture in which tracks are chosen but not changed.
+
+    ``chosen`` and ``pointed`` give a track, empty for none; ``pairing`` that pairing by two clicks is wanted or not.
+    """
 
     pairing = Signal(bool)
+    chosen = Signal(str)
+    pointed = Signal(str)
 
     def __init__(self) -> None:
         super().__init__("Video", " ")
@@ -32,7 +37,7 @@ class TrackView(Panel):
         self.canvas.hovered.connect(self._hovered)
         bar = self.header.row
         self.pair_button = toggle("link", "Pair", self._pair)
-        self.pair_button.setToolTip("Choose a point here, then click its place on the character")
+        set_tooltip(self.pair_button, "Click a point here and its place on the character, either first", "pair")
         self.names_button = toggle("labels", "Names", self._names)
         self.magnifier_button = toggle("magnifier", "", self._magnify, key="Z")
         self.magnifier_button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
@@ -72,7 +77,7 @@ class TrackView(Panel):
         """Select the track after the selected one."""
         if self.project is not None:
             self.project.select_next_track()
-            self.pairing.emit(self.pair_button.isChecked())
+            self.chosen.emit(self.project.track_id)
 
     def _begin(self, place: tuple[float, float], keys: Qt.KeyboardModifier) -> Gesture | None:
         owner = track_at(self._marks, self.frame, place, self.canvas.view.scale)
@@ -80,13 +85,18 @@ class TrackView(Panel):
 
     def _happened(self, event: object) -> None:
         if isinstance(event, Chosen) and self.project is not None:
-            self.project.select_track(event.owner)
-            self.pairing.emit(self.pair_button.isChecked())
+            self.chosen.emit(event.owner)
 
     def _hovered(self, place: tuple[float, float] | None) -> None:
         found = track_at(self._marks, self.frame, place, self.canvas.view.scale) if place is not None else ""
         if found != self.shown.hovered:
-            self.shown.hovered = found
+            self.highlight(found)
+            self.pointed.emit(found)
+
+    def highlight(self, track_id: str) -> None:
+        """Light a track that is pointed at, here or elsewhere; empty for none."""
+        if track_id != self.shown.hovered:
+            self.shown.hovered = track_id
             self.refresh()
 
     def _pair(self, on: bool) -> None:

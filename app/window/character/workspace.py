@@ -2,36 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QHBoxLayout, QSplitter
 
+from app.actions.checking import drift_in_frame, drift_limit
 from app.model.character import Character
 from app.model.document import Document
 from app.stages.stage import Stage
+from app.window.character.checks import Checks
+from app.window.character.commands import command
+from app.window.character.comparing import Comparing
+from app.window.character.events import Events
 from app.window.character.handles_of import handles
+from app.window.character.heating import Heating
 from app.window.character.inspector import CharacterInspector
 from app.window.character.mesh_source import MeshSource
 from app.window.character.mesh_view import MeshView
 from app.window.character.motion import Motion
+from app.window.character.overlays import Trail
+from app.window.character.pairing import Pairing
+from app.window.character.placing import Placing
 from app.window.character.posing import Posing
+from app.window.character.scenery import Scenery
 from app.window.character.track_view import TrackView
+from app.window.character.trails import filmed_trails, trails
+from app.window.character.warning_line import WarningLine
 from app.window.controls import Panel
 from app.window.frames import FrameLoader
 from app.window.lanes_of import CHARACTER_LEGEND, character_lanes
 from app.window.project import Project
 from app.window.timeline import Lane
 from app.window.timeline.transport import Entry
-from app.window.viewport import VertexChosen, VertexMoved, VertexMoving, VertexReleased
 from app.window.viewport.hosts import Choice
 from app.window.workspaces import Workspace
 
-HINT = "Click a vertex to select it, drag it to pose the frame. Shift moves it in depth; X, Y, Z hold an axis."
-PAIR = "{} is chosen: click its place on the character to pair them. Esc ends pairing."
 GHOSTS = (-8, -4, 4, 8)
+STATES = {"fresh": ("up to date", "ok"), "running": ("being solved", "accent"), "stale": ("waiting", "warn")}
 
 
 class CharacterWorkspace(Workspace):
@@ -41,25 +53,34 @@ class CharacterWorkspace(Workspace):
         super().__init__()
         self.project: Project | None = None
         self.motion = Motion()
+        self.pairing = Pairing()
         self.source: MeshSource | None = None
         self.posing: Posing | None = None
+        self.placing: Placing | None = None
+        self.checks: Checks | None = None
+        self.heating: Heating | None = None
+        self.comparing: Comparing | None = None
+        self.scenery: Scenery | None = None
         self.frame = 0
         self.picture = QImage()
+        self.before_edits = False
         self.tracks = TrackView()
         self.mesh = MeshView(choice)
         self.errors = self.mesh.errors
-        self.mesh.ghosts = self._ghosts
-        self.mesh.happened.connect(self._happened)
-        self.mesh.loaded.connect(self.refresh)
-        self.mesh.calm = lambda: self.project is None or not self.project.progress
-        self.tracks.pairing.connect(lambda _: self._say())
         self.inspector = CharacterInspector()
+        self.warnings = WarningLine()
+        self.mesh.ghosts = self._ghosts
+        self.mesh.trails = self._trails
+        self.mesh.calm = lambda: self.project is None or not self.project.progress
+        self._lay_out()
+        self.events = Events(self)
+
+    def _lay_out(self) -> None:
         side = Panel()
         side.setFixedWidth(304)
-        side.column.addWidget(self.inspector)
+        side.column.addWidget(self.inspector, 1)
+        side.column.addWidget(self.warnings)
         self.inspector.rows.setContentsMargins(12, 12, 12, 12)
-        self.inspector.propagate.connect(self.run_wanted)
-        self.inspector.placed.connect(lambda vertex, place: self._pose(vertex, place, True))
         splitter = QSplitter(Qt.Orientation.Horizontal)
         splitter.setHandleWidth(8)
         splitter.setChildrenCollapsible(False)
@@ -74,7 +95,7 @@ class CharacterWorkspace(Workspace):
         row.addWidget(splitter, 1)
         row.addWidget(side)
 
-    # showing -----------------------------------------------------------------------------------------------------
+    # the project -------------------------------------------------------------------------------------------------
 
     def attach(self, project: Project, loader: FrameLoader | None) -> None:
         """Take another project."""
@@ -83,27 +104,23 @@ class CharacterWorkspace(Workspace):
         self.motion = Motion()
         self.mesh.clear()
         self.source = MeshSource(project, self)
-        self.source.loaded.connect(self.refresh)
         self.posing = Posing(project, self.motion, self)
-        self.posing.changed.connect(self.refresh)
-        self.posing.moved.connect(self.show_pose)
-        self.posing.told.connect(self.mesh.errors.tell)
-        self.inspector.unmove.connect(self.posing.delete_move)
-        self.inspector.mute.connect(self.posing.mute)
+        self.placing = Placing(project, self.motion, self)
+        self.checks, self.heating = Checks(project, self), Heating(project, self)
+        self.comparing, self.scenery = Comparing(project, self), Scenery(project, self)
+        self.heating.choose(self.mesh.bar.heat)
+        self.comparing.choose(self.mesh.bar.variants)
+        self.events.tie(project)
         self.tracks.attach(project, loader)
-        project.partial.connect(self._partial)
 
     def detach(self) -> None:
         """Let go of the project."""
-        if self.posing is not None:
-            self.inspector.unmove.disconnect(self.posing.delete_move)
-            self.inspector.mute.disconnect(self.posing.mute)
-            self.posing.close()
-            self.posing = None
-        if self.source is not None:
-            self.source.close()
-            self.source = None
-        self.project = None
+        self.events.untie()
+        for part in (self.posing, self.source, self.checks, self.heating, self.scenery):
+            if part is not None:
+                part.close()
+        self.posing = self.placing = self.source = self.checks = self.heating = None
+        self.comparing = self.scenery = self.project = None
 
     def close_view(self) -> None:
         """Close the 3D view; it cannot be shown again."""
@@ -113,6 +130,8 @@ class CharacterWorkspace(Workspace):
     def attach_clip(self, project: Project, loader: FrameLoader | None) -> None:
         """Show the tracks over another clip."""
         self.tracks.attach(project, loader)
+
+    # what the window asks ----------------------------------------------------------------------------------------
 
     def lanes(self) -> list[Lane]:
         """Tracks, contacts, edited poses, and how far the solution is."""
@@ -142,7 +161,35 @@ class CharacterWorkspace(Workspace):
 
     def document_changed(self, before: Document, after: Document) -> None:
         """Show the document as it is."""
+        if self.placing is not None:
+            self.placing.follow(before, after)
         self.refresh()
+
+    def command(self, name: str) -> bool:
+        """Do a command of this workspace; says whether it was one."""
+        return command(self, name)
+
+    def showEvent(self, event: Any) -> None:
+        """Bring the 3D view up to date when the workspace comes into sight."""
+        super().showEvent(event)
+        self.refresh()
+        self.events.say()
+
+    # showing -----------------------------------------------------------------------------------------------------
+
+    @property
+    def character(self) -> Character | None:
+        """The character chosen."""
+        if self.project is None:
+            return None
+        wanted = self.project.character_id
+        return next((each for each in self.project.document.characters if each.id == wanted), None)
+
+    def pose(self) -> NDArray[np.float64] | None:
+        """The vertices (v, 3) that are shown, None where the character has not even been placed."""
+        if self.before_edits and (found := self.motion.before_edits(self.frame)) is not None:
+            return found
+        return self.motion.vertices(self.frame)
 
     def refresh(self) -> None:
         """Show the project as it is; nothing in 3D is loaded while the workspace is hidden."""
@@ -151,50 +198,43 @@ class CharacterWorkspace(Workspace):
             return
         self.motion.read(project)
         self.tracks.refresh()
-        character = self._character()
-        vertices = self.motion.vertices(self.frame) if character is not None else None
+        character = self.character
+        vertices = self.pose() if character is not None else None
         place = None
         if vertices is not None and 0 <= project.vertex < len(vertices):
             x, y, z = (float(value) for value in vertices[project.vertex])
             place = (x, y, z)
-        self.inspector.show_character(project, place)
+        mode = self.placing.mode if self.placing is not None else None
+        copied = self.posing is not None and self.posing.copy is not None
+        self.inspector.show_character(project, place, mode=mode or "", copied=copied)
         if self.isVisible():
             self._show_mesh(character, vertices)
+            self._show_checks(character)
         self.lanes_changed.emit()
 
     def show_pose(self) -> None:
         """Show the pose of the frame and its handles, nothing else: it follows the mouse."""
-        character = self._character()
-        vertices = self.motion.vertices(self.frame)
+        character = self.character
+        vertices = self.pose()
         viewport = self.mesh.viewport
         if self.project is None or character is None or vertices is None or viewport is None or not self.isVisible():
             return
         if len(vertices) == len(viewport.vertices):
-            viewport.move_mesh(vertices)
-            before = self.posing.before if self.posing is not None else None
-            self.mesh.show_handles(handles(self.project, character, vertices, before))
-
-    def showEvent(self, event: Any) -> None:
-        """Bring the 3D view up to date when the workspace comes into sight."""
-        super().showEvent(event)
-        self.refresh()
-        self._say()
-
-    def _character(self) -> Character | None:
-        if self.project is None:
-            return None
-        wanted = self.project.character_id
-        return next((each for each in self.project.document.characters if each.id == wanted), None)
+            self.mesh.move_mesh(vertices)
+            self._show_handles(character, vertices)
+            if self.heating is not None:
+                self.heating.want(self.frame, vertices)
 
     def _show_mesh(self, character: Character | None, vertices: Any) -> None:
-        project = self.project
+        project, source = self.project, self.source
         assert project is not None
-        assert self.source is not None
+        assert source is not None
+        self.mesh.show_empty(character is not None, bool(project.document.tracks))
         if character is None:
             self.mesh.clear()
-            self.mesh.header.caption.setText("Choose a character mesh: Project menu, Add a character.")
+            self.mesh.header.caption.setText("")
             return
-        shape = self.source.shape(character)
+        shape = source.shape(character)
         if not self.mesh.ready() or shape is None:
             return
         if vertices is None:
@@ -203,9 +243,23 @@ class CharacterWorkspace(Workspace):
             return
         if self.posing is not None:
             self.posing.make_ready(character)
+            self.posing.show_committed(character, self.frame)
         self.mesh.header.title.setText(character.name)
-        self.mesh.header.caption.setText(f"{len(vertices):,} vertices  ·  {len(character.pairs)} pairs")
+        self.mesh.header.caption.setText(f"{len(vertices):,} vertices")
         self.mesh.show_mesh(vertices, shape.faces, shape.colours)
+        self._show_world(vertices)
+        self._show_handles(character, vertices)
+        self._show_compared(shape.faces, shape.colours)
+        if self.heating is not None:
+            self.heating.want(self.frame, vertices)
+        if self.scenery is not None:
+            self.scenery.keep_up(self.mesh.bar.layers, over_film=self.mesh.bar.over_film)
+            self.mesh.bar.missing = self.scenery.missing()
+        self._show_notes(character)
+
+    def _show_world(self, vertices: NDArray[np.float64]) -> None:
+        project = self.project
+        assert project is not None
         world = project.result(project.session.stages.world)
         if world is not None and self.frame < len(world.cameras):
             self.mesh.show_camera(world.cameras[self.frame], self.picture)
@@ -213,13 +267,54 @@ class CharacterWorkspace(Workspace):
         else:
             self.mesh.show_camera(None, None)
             self.mesh.show_scene(vertices[:0], vertices[:0], float(vertices[:, 2].min()))
-        before = self.posing.before if self.posing is not None else None
-        self.mesh.show_handles(handles(project, character, vertices, before))
-        if self.mesh.notes is not None:
-            state = project.motion_state(character.id)
-            words = {"fresh": ("up to date", "ok"), "running": ("being solved", "accent"), "stale": ("waiting", "warn")}
-            self.mesh.notes.show_frame(self.frame, project.frame_count, self.frame / max(project.fps, 1e-9))
-            self.mesh.notes.show_right(*words.get(state, ("not solved yet", "text3")))
+
+    def _show_handles(self, character: Character, vertices: NDArray[np.float64]) -> None:
+        project = self.project
+        assert project is not None
+        self.mesh.show_gizmo(self.placing.gizmo(vertices) if self.placing is not None else None)
+        away = drift_in_frame(project.session, character.id, self.frame, vertices)
+        limit = drift_limit(project.session)
+        world = project.result(project.session.stages.world)
+        made = handles(
+            project,
+            character,
+            vertices,
+            self.posing.before if self.posing is not None else None,
+            unedited=self.motion.before_edits(self.frame),
+            away=away,
+            limit=limit,
+            metric=world is None or world.metric,
+        )
+        self.mesh.show_handles(made)
+        if not self.mesh.dragging:
+            check = self.checks.check if self.checks is not None and self.checks.fresh else None
+            stretch = check.stretch[self.frame] if check is not None and self.frame < len(check.stretch) else None
+            self.inspector.show_fit(away, limit, None if stretch is None else (float(stretch[0]), float(stretch[1])))
+
+    def _show_compared(self, faces: Any, colours: Any) -> None:
+        if self.comparing is not None:
+            for variant in self.comparing.chosen:
+                pose, title, token = self.comparing.pose(variant, self.frame)
+                self.mesh.show_compared(variant, pose, faces, colours, title, token)
+
+    def _show_notes(self, character: Character) -> None:
+        project, notes = self.project, self.mesh.notes
+        if notes is None or project is None:
+            return
+        notes.show_frame(self.frame, project.frame_count, self.frame / max(project.fps, 1e-9))
+        if self.before_edits:
+            notes.show_right("before the edits", "edit")
+        else:
+            notes.show_right(*STATES.get(project.motion_state(character.id), ("not solved yet", "text3")))
+
+    def _show_checks(self, character: Character | None) -> None:
+        checks = self.checks
+        if checks is None or character is None:
+            self.warnings.setVisible(False)
+            return
+        checks.keep_up()
+        self.warnings.setVisible(True)
+        self.warnings.show_check(checks.check if checks.fresh else None, measuring=checks.measuring, at=checks.at)
 
     def _ghosts(self) -> list[tuple[int, Any]]:
         if self.project is None:
@@ -229,78 +324,19 @@ class CharacterWorkspace(Workspace):
         poses = [(step, self.motion.vertices(frame)) for step, frame in frames if 0 <= frame < count]
         return [(step, pose) for step, pose in poses if pose is not None]
 
-    def _partial(self, stage: Stage, value: Any) -> None:
+    def _trails(self, film: bool) -> Sequence[Trail]:
+        project, character = self.project, self.character
+        if project is None or character is None:
+            return ()
+        if film:
+            return filmed_trails(project, self.tracks.reading, self.frame)
+        return trails(project, character, self.motion, self.frame)
+
+    def partial(self, stage: Stage, value: Any) -> None:
+        """Take a frame that was just solved."""
         frame = self.motion.take(stage, value)
         if frame is None:
             return
         if frame == self.frame:
             self.show_pose()
         self.lanes_changed.emit()
-
-    # the mouse ---------------------------------------------------------------------------------------------------
-
-    def _say(self) -> None:
-        project = self.project
-        if project is not None and self.tracks.pair_button.isChecked() and project.track_id:
-            self.hint.emit(PAIR.format(project.document.track(project.track_id).name))
-        else:
-            self.hint.emit(HINT)
-
-    def _happened(self, event: object) -> None:
-        project, character, posing = self.project, self._character(), self.posing
-        if project is None or character is None or posing is None:
-            return
-        if isinstance(event, VertexChosen):
-            if self.tracks.pair_button.isChecked() and project.track_id:
-                posing.pair(character, project.track_id, event.vertex)
-                self._say()
-            project.select_vertex(event.vertex)
-            self.refresh()
-        elif isinstance(event, VertexMoving):
-            self._pose(event.vertex, event.place, False)
-        elif isinstance(event, VertexMoved):
-            self._pose(event.vertex, event.place, True)
-        elif isinstance(event, VertexReleased):
-            posing.cancel()
-
-    def _pose(self, vertex: int, place: tuple[float, float, float], end: bool) -> None:
-        character = self._character()
-        if character is None or self.posing is None or self.project is None:
-            return
-        shown = self.motion.vertices(self.frame)
-        if shown is None or not self.posing.possible(character):
-            text = "The character has no motion yet: solve it first, then pose it."
-            self.mesh.errors.tell(text, level="note", action=("Run what is missing", self.run_wanted.emit))
-            return
-        self.project.select_vertex(vertex)
-        self.posing.move(character, self.frame, shown, vertex, place)
-        if end:
-            self.posing.release()
-
-    # commands ----------------------------------------------------------------------------------------------------
-
-    def command(self, name: str) -> bool:
-        """Do a command of this workspace; says whether it was one."""
-        handlers: dict[str, Callable[[], object]] = {
-            "fit": self.mesh.fit,
-            "ghosts": self.mesh.ghost_button.toggle,
-            "overlay": lambda: self.mesh.opacity.setValue(40 if self.mesh.opacity.value() > 70 else 100),
-            "look_camera": lambda: self.mesh.look("camera"),
-            "look_side": lambda: self.mesh.look("side"),
-            "look_orbit": lambda: self.mesh.look("orbit"),
-            "magnifier": self.tracks.magnifier_button.toggle,
-            "next_track": self.tracks.next_track,
-            "delete": lambda: self.posing.delete_selected() if self.posing else None,
-        }
-        if name == "cancel":
-            viewport = self.mesh.viewport
-            if viewport is not None and viewport.cancel():
-                return True
-            if self.tracks.pair_button.isChecked():
-                self.tracks.pair_button.setChecked(False)
-                return True
-            return False
-        if name not in handlers:
-            return False
-        handlers[name]()
-        return True

@@ -1,0 +1,50 @@
+"""A section of the inspector under a title that folds it away."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
+
+from app.window import icons
+from app.window.controls import label, separator
+
+
+class Fold(QWidget):
+    """``column`` takes the rows; ``caption`` says at the right what is inside, folded or not."""
+
+    def __init__(self, title: str, *, opened: bool = True) -> None:
+        super().__init__()
+        outer = QVBoxLayout(self)
+        outer.setContentsMargins(0, 0, 0, 0)
+        outer.setSpacing(6)
+        outer.addWidget(separator())
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        self.head = QToolButton()
+        self.head.setText(title)
+        self.head.setProperty("toggle", "true")
+        self.head.setProperty("fold", "true")
+        self.head.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self.head.setCheckable(True)
+        self.head.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.caption = label("", "caption")
+        row.addWidget(self.head)
+        row.addStretch(1)
+        row.addWidget(self.caption)
+        outer.addLayout(row)
+        self.body = QWidget()
+        self.column = QVBoxLayout(self.body)
+        self.column.setContentsMargins(0, 0, 0, 0)
+        self.column.setSpacing(8)
+        outer.addWidget(self.body)
+        self.head.toggled.connect(self._show)
+        self.head.setChecked(opened)
+        self._show(opened)
+
+    def open(self) -> None:
+        """Unfold it."""
+        self.head.setChecked(True)
+
+    def _show(self, opened: bool) -> None:
+        self.head.setIcon(icons.icon("unfolded" if opened else "folded", "text2", "text2"))
+        self.body.setVisible(opened)

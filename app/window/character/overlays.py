@@ -1,0 +1,138 @@
+"""What is painted over the 3D picture beside the handles: trails of the points, the camera, legends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen
+
+from app.actions.heat import Heat
+from app.window import fonts, theme
+from app.window.canvas import marks
+from app.window.viewport.handles import LEGEND, Handle, paint_shape
+from app.window.viewport.lens import Lens
+from imitation.geometry import Camera
+
+Array = NDArray[np.float64]
+NARROW = 420
+"""Pixels of width below which a view has no room for legends."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trail:
+    """The way of a point.
+
+    colour : of its track. places : (k, 3) world, or (k, 2) picture pixels, NaN where unknown. now : index of the
+    frame shown.
+    """
+
+    colour: str
+    places: Array
+    now: int
+
+
+def paint_trails(painter: QPainter, lens: Lens, trails: Sequence[Trail]) -> None:
+    """Draw the ways of points in space: thin, the coming part dashed."""
+    for trail in trails:
+        seen = lens.to_widget(trail.places)
+        _way(painter, seen[: trail.now + 1], trail.colour, dash=False)
+        _way(painter, seen[trail.now :], trail.colour, dash=True)
+
+
+def paint_points(painter: QPainter, trails: Sequence[Trail], scale: float, x: float, y: float) -> None:
+    """Draw tracked points over the film: their ways in picture pixels, placed by the view, and a cross for now."""
+    for trail in trails:
+        seen = (trail.places + 0.5) * scale + (x, y)
+        _way(painter, seen[: trail.now + 1], trail.colour, dash=False)
+        if np.isfinite(seen[trail.now]).all():
+            marks.cross(painter, float(seen[trail.now, 0]), float(seen[trail.now, 1]), QColor(trail.colour), 4.5)
+
+
+def _way(painter: QPainter, seen: Array, colour: str, *, dash: bool) -> None:
+    good = seen[np.isfinite(seen).all(1)]
+    if len(good) > 1:
+        faint = QColor(colour)
+        faint.setAlpha(170)
+        pen = QPen(faint, 1.4)
+        if dash:
+            pen.setDashPattern([2.0, 3.0])
+        painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawPolyline(marks.polygon(good.tolist()))
+
+
+def paint_camera(painter: QPainter, lens: Lens, camera: Camera, size: tuple[int, int], length: float) -> None:
+    """Draw the recovered camera as a pyramid that is ``length`` long, world units."""
+    width, height = size
+    corners = np.array([[0, 0], [width, 0], [width, height], [0, height]], float) - 0.5
+    base = camera.lift(corners, np.full(4, length))
+    seen, tip = lens.to_widget(base), lens.to_widget(camera.centre)
+    if not (np.isfinite(seen).all() and np.isfinite(tip).all()):
+        return
+    pen = QPen(theme.DARK.colour("contact", 210), 1.4)
+    painter.setPen(pen)
+    painter.setBrush(theme.DARK.colour("contact", 26))
+    points = [QPointF(float(x), float(y)) for x, y in seen]
+    painter.drawPolygon(points)
+    for point in points:
+        painter.drawLine(QPointF(float(tip[0]), float(tip[1])), point)
+
+
+def paint_legend(painter: QPainter, lens: Lens, *, ghosts: bool) -> None:
+    """Say at the bottom what the shapes of the handles mean."""
+    width, height = lens.size
+    if width < NARROW:
+        return
+    face = fonts.font(fonts.CAPTION, QFont.Weight.Medium)
+    metrics = QFontMetricsF(face)
+    entries = [*LEGEND, ("before", "before the edit")]
+    if ghosts:
+        entries.append(("ghost", "other frames"))
+    total = sum(metrics.horizontalAdvance(text) + 34 for _, text in entries)
+    x, y = 12.0, height - 20.0
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(0, 0, 0, 120))
+    painter.drawRoundedRect(QRectF(x - 4, y - 13, min(total, width - 16.0), 26), 5, 5)
+    for kind, text in entries:
+        if x + metrics.horizontalAdvance(text) + 26 > width - 8:
+            break
+        _sample(painter, kind, x + 10, y)
+        painter.setFont(face)
+        painter.setPen(theme.DARK.colour("text"))
+        room = QRectF(x + 22, y - 13, metrics.horizontalAdvance(text) + 2, 26)
+        painter.drawText(room, Qt.AlignmentFlag.AlignVCenter, text)
+        x += metrics.horizontalAdvance(text) + 34
+
+
+def _sample(painter: QPainter, kind: str, x: float, y: float) -> None:
+    if kind == "before":
+        marks.ring(painter, x, y, QColor(255, 255, 255, 170), 4.5, dot=False)
+    elif kind == "ghost":
+        painter.setPen(QPen(theme.DARK.colour("ok"), 2.0))
+        painter.drawPoints([QPointF(x + dx, y + dy) for dx, dy in ((-4, -2), (0, 3), (4, -3), (-1, -4), (3, 2))])
+    else:
+        paint_shape(painter, Handle(0, "", (0.0, 0.0, 0.0), kind), x, y)
+
+
+def paint_heat_legend(painter: QPainter, lens: Lens, heat: Heat) -> None:
+    """Draw the bar of colours at the right, with what they stand for."""
+    width, height = lens.size
+    bar = QRectF(width - 30.0, max(height / 2 - 90.0, 44.0), 12.0, min(180.0, height - 110.0))
+    if bar.height() < 40:
+        return
+    fade = QLinearGradient(bar.bottomLeft(), bar.topLeft())
+    for number, colour in enumerate(heat.ramp):
+        fade.setColorAt(number / (len(heat.ramp) - 1), QColor(*colour))
+    painter.setPen(QPen(marks.UNDERLAY, 3.0))
+    painter.setBrush(fade)
+    painter.drawRoundedRect(bar, 3, 3)
+    text = theme.DARK.colour("text")
+    for share, words in heat.marks:
+        marks.plate(painter, bar.left() - 6, bar.bottom() - share * bar.height(), words, text, align="right")
+    marks.plate(painter, width - 12.0, bar.top() - 20, heat.title, text, align="right")
+    if heat.note and width > NARROW:
+        marks.plate(painter, width - 12.0, bar.bottom() + 22, heat.note, theme.DARK.colour("text2"), align="right")
