@@ -194,7 +194,8 @@ def repeatable(block: Block, axis: Axis) -> bool:
 
 def found_at(shown: Composed, axis: Axis, x: float, y: float, height: int = COMPOSED) -> ComposedHit:
     """What lies under a pixel."""
-    frame = min(max(int(axis.first + (x - axis.left) / axis.pixels), 0), max(shown.count - 1, 0))
+    # Half a pixel more: a mouse on a tick of the ruler means its frame.
+    frame = min(max(int(axis.first + (x + 0.5 - axis.left) / axis.pixels), 0), max(shown.count - 1, 0))
     if x < LABELS:
         return ComposedHit("label", frame)
     if y < RULER:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QSlider, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
 from app.model.edits import performance as edits
-from app.window.controls import NumberField, NumberRange, Row, label
+from app.window.controls import Chooser, NumberField, NumberRange, Row, label
+from app.window.controls.own_keys import OwnKeys
 from app.window.performance.section import Section
 from app.window.performance.state import PerformanceState
 from app.window.performance.trial import Trial
@@ -61,6 +62,7 @@ class DatabasePanel(QWidget):
         self.slider.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.slider.setAccessibleName("Graph size mu")
         self.slider.setToolTip("More keeps more transitions. The path that results is lit while you drag.")
+        OwnKeys(self.slider)
         self.slider.valueChanged.connect(self._slid)
         self.slider.sliderReleased.connect(self._released)
         self.number = NumberField(NumberRange(0.0, 1000.0, 0.01, 3, "", 0.9), 0.9)
@@ -74,11 +76,10 @@ class DatabasePanel(QWidget):
         column.addLayout(head)
         column.addWidget(self.slider)
 
-    def _chooser(self, what: str) -> QComboBox:
-        made = QComboBox()
+    def _chooser(self, what: str) -> Chooser:
+        made = Chooser(name=f"Method of {what}")
         for value, text in METHODS:
             made.addItem(text, value)
-        made.setAccessibleName(f"Method of {what}")
         made.activated.connect(lambda number: self._choose(what, METHODS[number][0]))
         return made
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.model.edits import performance as edits
-from app.window.controls import NumberField, NumberRange, label, toggle
+from app.window.controls import Chooser, NumberField, NumberRange, label, toggle
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.state import PerformanceState
 
@@ -30,8 +30,7 @@ class OptionsBar(QWidget):
         self.refresh()
 
     def _paths(self, row: QHBoxLayout) -> None:
-        self.paths = QComboBox()
-        self.paths.setAccessibleName("Which path is taken")
+        self.paths = Chooser(name="Which path is taken")
         self.paths.setToolTip("The best path and the next best: the cost of the worst transition, and the length")
         self.paths.setFixedWidth(262)
         self.paths.activated.connect(self._take)

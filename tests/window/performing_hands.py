@@ -1,0 +1,89 @@
+"""What hands do in the Motion graph: places of nodes and blocks, waiting for results."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from app.window.performance.blocks import Block, box
+from app.window.shell import Shell
+from app.window.timeline.lanes import RULER
+from tests.window.conftest import at, settle, wait_for
+
+LEFT = Qt.MouseButton.LeftButton
+WALK, JACK, SQUAT, MARCH = range(4)
+
+
+class PerformingHands:
+    """Works on the Motion graph of a window."""
+
+    def __init__(self, shell: Shell) -> None:
+        self.shell, self.page = shell, shell.performance
+        self.canvas, self.lane = self.page.graph.canvas, self.page.composed.view
+
+    @property
+    def keys(self) -> list[int]:
+        """Nodes of the key motions of the document, in order."""
+        state = self.page.state
+        return [state.motion_node(key.motion) for key in state.document.performance.keys]
+
+    def ready(self) -> None:
+        """Wait for the graph and its places."""
+        wait_for(lambda: self.page.state.graph is not None and self.canvas.picture.nodes, 60)
+        settle(30)
+
+    def place(self, node: int) -> QPoint:
+        """Where a node is seen."""
+        mark = self.canvas.picture.mark(node)
+        assert mark is not None
+        return at(*self.canvas.lens.pixel(mark.x, mark.y))
+
+    def click(self, node: int) -> None:
+        """Click a node."""
+        QTest.mouseClick(self.canvas, LEFT, pos=self.place(node))
+
+    def twice(self, node: int) -> None:
+        """Double-click a node."""
+        QTest.mouseClick(self.canvas, LEFT, pos=self.place(node))
+        QTest.mouseDClick(self.canvas, LEFT, pos=self.place(node))
+        QTest.mouseRelease(self.canvas, LEFT, pos=self.place(node))
+
+    def compose(self, *nodes: int) -> None:
+        """Double-click nodes in order, and wait for the path."""
+        for node in nodes:
+            self.twice(node)
+        self.found()
+
+    def found(self) -> None:
+        """Wait for the path of the key motions as they are, or for why there is none."""
+        state = self.page.state
+        wait_for(lambda: state.problem or (state.paths and self.path_keys() == self.merged()), 30)
+        settle(20)
+
+    def path_keys(self) -> list[int]:
+        """Nodes of the key motions on the path."""
+        performance = self.page.state.performance
+        return [performance.path[place] for place in performance.keys] if performance is not None else []
+
+    def merged(self) -> list[int]:
+        """Key motions with equal neighbours together."""
+        return [node for place, node in enumerate(self.keys) if not place or self.keys[place - 1] != node]
+
+    def block(self, key: int) -> Block:
+        """The block of a key motion."""
+        return next(block for block in self.lane.shown.blocks if key in block.keys)
+
+    def on_block(self, key: int) -> tuple[float, float]:
+        """A place on the block of a key motion, away from its buttons."""
+        left, right = box(self.block(key), self.lane.axis)
+        return left + min(30.0, (right - left) / 2), RULER + 12.0
+
+    def on_button(self, key: int, sign: int) -> QPoint:
+        """The + or - of a block."""
+        _, right = box(self.block(key), self.lane.axis)
+        return at(right - (12.0 if sign > 0 else 57.0), RULER + self.lane.heights[0] - 14.0)
+
+    def press(self, key: Qt.Key, keys: Qt.KeyboardModifier = Qt.KeyboardModifier.NoModifier) -> None:
+        """Press a key wherever the focus is."""
+        widget = self.shell.focusWidget() or self.shell
+        QTest.keyClick(widget, key, keys)
