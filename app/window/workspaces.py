@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QSize, Signal
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QStackedWidget, QWidget
 
@@ -114,6 +114,10 @@ class Pages(QStackedWidget):
     def errors(self) -> ErrorBar:
         """The bar of what is seen."""
         return self.welcome.errors if self.welcoming else self.in_sight.errors
+
+    def minimumSizeHint(self) -> QSize:
+        """As small as what is seen may be: a hidden page takes no room from the timeline."""
+        return self.currentWidget().minimumSizeHint()
 
     def device(self) -> str:
         """Name what draws in 3D, once something does."""
