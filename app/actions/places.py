@@ -15,8 +15,3 @@ def unsaved_folder() -> Path:
 def settings_folder() -> Path:
     """Where settings of the program are kept."""
     return Path(platformdirs.user_config_dir("motionwright", appauthor=False))
-
-
-def compiled_folder() -> Path:
-    """Where compiled kernels and other things that can be made again are kept."""
-    return Path(platformdirs.user_cache_dir("motionwright", appauthor=False))

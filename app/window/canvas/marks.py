@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
 
-from app.window import fonts, theme
+from app.window import fonts
 
 UNDERLAY = QColor(0, 0, 0, 190)
 PLATE = QColor(0, 0, 0, 205)
@@ -91,9 +91,3 @@ def plate(
 def polygon(points: Sequence[Sequence[float]]) -> QPolygonF:
     """A Qt polygon of widget places (n, 2)."""
     return QPolygonF([QPointF(float(x), float(y)) for x, y in points])
-
-
-def track_colour(index: int) -> QColor:
-    """The colour of the index-th track; the row repeats after eight."""
-    tracks = theme.active().tracks
-    return theme.active().colour(tracks[index % len(tracks)])

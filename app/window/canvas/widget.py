@@ -73,10 +73,6 @@ class Canvas(QWidget):
         self._layers = tuple(layers)
         self.update()
 
-    def scale_of_slack(self, pixels: float) -> float:
-        """A distance in widget pixels as picture pixels."""
-        return pixels / self.view.scale
-
     def fit(self) -> None:
         """Show the whole picture."""
         self._fit = True
