@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import threading
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from app.actions.session import Session
 from app.window.shell import Shell
 from app.window.viewport import Viewport
 from tests.window.conftest import settle, wait_for
+from tests.window.small_performance import build_small_performance
 
 pytestmark = [pytest.mark.window, pytest.mark.slow, pytest.mark.xdist_group("window")]
 ROUNDS, WARM = 10, 3
@@ -49,14 +51,42 @@ def test_ten_windows_leave_nothing(session: Session, qapp: QApplication, monkeyp
     place: Path = session.folder.path
     session.close()
     del session
+
+    def look(shell: Shell) -> None:
+        wait_for(lambda: not shell.video.canvas.picture.isNull())
+        shell.do("character")
+        wait_for(lambda: shell.character.mesh.viewport and len(shell.character.mesh.viewport.vertices))
+
+    open_and_close(place, look)
+
+
+def test_ten_motion_graphs_leave_nothing(qapp: QApplication, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each shows the graph, composes, plays what is composed in 3D, and is closed while it is still placed."""
+    monkeypatch.setattr("app.window.files.ask_unsaved", lambda *_: "discard")
+    place = build_small_performance(tmp_path)
+
+    def look(shell: Shell) -> None:
+        page = shell.performance
+        shell.do("performance")
+        wait_for(lambda: page.graph.canvas.picture.nodes, 60)
+        for node in (0, 2):
+            page.editing.append(node)
+        wait_for(lambda: page.state.placed is not None and page.preview.shown >= 0, 60)
+        shell.do("play")
+        settle(60)
+        page.editing.append(1)
+
+    open_and_close(place, look)
+
+
+def open_and_close(place: Path, look: Callable[[Shell], None]) -> None:
+    """Open windows one after the other, look at something in each, and count what is left of them."""
     counts: list[Counter[str]] = []
     for _ in range(ROUNDS):
         shell = Shell(Session.open(place), viewport="raster")
         shell.resize(1200, 760)
         shell.show()
-        wait_for(lambda shell=shell: not shell.video.canvas.picture.isNull())
-        shell.do("character")
-        wait_for(lambda shell=shell: shell.character.mesh.viewport and len(shell.character.mesh.viewport.vertices))
+        look(shell)
         settle(20)
         shell.close()
         shell.deleteLater()

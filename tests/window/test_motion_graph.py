@@ -10,12 +10,14 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QToolButton
 
 from app.actions.session import Session
 from app.model.edits import performance as edits
 from app.window.performance.blocks import box
 from app.window.shell import Shell
 from app.window.timeline.lanes import RULER
+from tests.window.clipping import assert_nothing_clipped
 from tests.window.conftest import _move, at, drag, settle, wait_for
 from tests.window.performing_hands import JACK, LEFT, MARCH, SQUAT, WALK, PerformingHands
 from tests.window.small_performance import build_small_performance
@@ -431,6 +433,31 @@ def test_wheel_and_drag_move_the_view(hands: PerformingHands) -> None:
     hands.shell.setFocus()
     hands.press(Qt.Key.Key_F)
     assert hands.canvas.lens == fitted
+
+
+@pytest.mark.parametrize("size", [(1180, 720), (1440, 900), (1920, 1080)])
+def test_nothing_is_clipped(hands: PerformingHands, size: tuple[int, int]) -> None:
+    """At three sizes every word has its room, with a path and without one."""
+    hands.shell.resize(*size)
+    hands.compose(WALK, SQUAT)
+    settle(100)
+    assert_nothing_clipped(hands.shell)
+    hands.click(MARCH)
+    hands.press(Qt.Key.Key_X)
+    wait_for(lambda: hands.page.composed.note.isVisible(), 30)
+    settle(100)
+    assert_nothing_clipped(hands.shell)
+    note = hands.page.composed.note
+    assert note.sentence.heightForWidth(note.sentence.width()) <= note.sentence.height() + 1
+
+
+def test_every_control_says_what_it_is(hands: PerformingHands) -> None:
+    """Buttons without a text have a tooltip and a name for screen readers."""
+    hands.compose(WALK, SQUAT)
+    for each in hands.shell.findChildren(QToolButton):
+        if each.isVisibleTo(hands.shell) and not each.text():
+            assert each.toolTip(), each
+            assert each.accessibleName(), each.toolTip()
 
 
 def test_an_empty_project_invites(open_shell: Callable[[Session], Shell]) -> None:

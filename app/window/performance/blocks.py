@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from app.window.performance.state import PerformanceState
 
 COMPOSED, COSTS = 64, 44
-LOW, LOW_COSTS = 42, 30
+LOW, LOW_COSTS = 48, 30
 """Heights of the two lanes, and where room is scarce."""
 BUTTON = 18.0
 NEAR = 6.0

@@ -1,0 +1,22 @@
+"""Whether words and buttons have the room they need."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QLabel, QPushButton
+
+from app.window.controls import ScrollColumn
+from app.window.shell import Shell
+
+
+def assert_nothing_clipped(shell: Shell) -> None:
+    """No inspector is wider than its column and no button or label in sight cuts its text."""
+    for column in shell.findChildren(ScrollColumn):
+        if column.isVisible():
+            assert column.widget().width() <= column.viewport().width() + 1
+    for widget in shell.findChildren(QPushButton):
+        if widget.isVisible():
+            assert widget.width() >= widget.minimumSizeHint().width() - 1, widget.text()
+    for label in shell.findChildren(QLabel):
+        if label.isVisible() and type(label).__name__ == "QLabel" and not label.wordWrap():
+            assert label.width() >= label.sizeHint().width() - 1, label.text()
+    assert shell.pages.height() > 250
