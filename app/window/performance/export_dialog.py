@@ -35,7 +35,7 @@ FORMS = (
     ("animation", "One animated GLB", ".glb"),
     ("film", "Film, mp4", ".mp4"),
 )
-SIZES = ((960, 540), (1280, 720), (1920, 1080), (720, 720))
+SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080), (720, 720))
 ANGLE = NumberRange(-360.0, 360.0, 1.0, 0, "°", 60.0)
 KEPT = "performance export"
 BLENDING = "The cuts are still being blended: wait a moment, or leave the in-betweens out."
@@ -230,8 +230,8 @@ class ExportDialog(QDialog):
         self.place.setText(str(self._suited((folder if folder.is_dir() else Path.home()) / name)))
         for box, key, default in self._boxes():
             box.setChecked(str(kept.value(f"{KEPT}/{key}", default)) == "yes")
-        number = str(kept.value(f"{KEPT}/size", "0"))
-        self.size.setCurrentIndex(int(number) if number.isdigit() and int(number) < len(SIZES) else 0)
+        number = str(kept.value(f"{KEPT}/size", "1"))
+        self.size.setCurrentIndex(int(number) if number.isdigit() and int(number) < len(SIZES) else 1)
 
     def _boxes(self) -> tuple[tuple[QCheckBox, str, str], ...]:
         return (
