@@ -17,15 +17,24 @@ def add_clip(session: Session, path: Path, *, copy: bool = False, fps: float | N
 
     Raises ``InputError`` when it cannot be read or the project's marks do not fit it.
     """
+    return take_clip(session, read_clip(session, path, copy=copy, fps=fps), path.stem)
+
+
+def read_clip(session: Session, path: Path, *, copy: bool = False, fps: float | None = None) -> Clip:
+    """Look what a clip is and bring it in, without changing the document: safe in any thread."""
     if not path.exists():
         raise InputError(f"{path} does not exist: check the path.")
     with open_images(path, fps=fps or 25.0) if path.is_dir() else open_video(path) as source:
         width, height = source.size
         count, rate = len(source), float(source.fps)
-    clip = Clip(session.bring_in(path, copy=copy), width, height, count, rate)
+    return Clip(session.bring_in(path, copy=copy), width, height, count, rate)
+
+
+def take_clip(session: Session, clip: Clip, name: str) -> Clip:
+    """Set a clip that was read; a project without a name of its own is called like it."""
     session.apply(scene.set_clip(session.document, clip))
     if session.document.name == "Untitled":
-        session.apply(scene.rename(session.document, path.stem))
+        session.apply(scene.rename(session.document, name))
     return clip
 
 

@@ -48,10 +48,10 @@ class LostMedium:
         return Path(self.media.path).name
 
 
-def lost_media(document: Document, folder: ProjectFolder) -> tuple[LostMedium, ...]:
-    """Give what is missing, with the place where each lies now if that is beside the project."""
+def lost_media(document: Document, folder: ProjectFolder, beside: Path | None = None) -> tuple[LostMedium, ...]:
+    """Give what is missing, with the place where each lies now if that is beside the project, or in another folder."""
     lost = [each for each in _all(document) if _missing(each.media, folder)]
-    return tuple(attrs.evolve(each, found=look_for(each, folder.path.parent)) for each in lost)
+    return tuple(attrs.evolve(each, found=look_for(each, beside or folder.path.parent)) for each in lost)
 
 
 def look_for(lost: LostMedium, folder: Path) -> Path | None:

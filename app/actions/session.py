@@ -209,6 +209,11 @@ class Session:
         with explained(self.folder.path):
             self.folder.autosave_file.unlink(missing_ok=True)
 
+    def look_again(self) -> bool:
+        """Whether no other program has the project open now; one that had it may have closed it since."""
+        self.alone = self.alone or self._lock.take()
+        return self.alone
+
     def close(self) -> None:
         """Stop all work and close all files; what was not saved stays recoverable only if it was autosaved."""
         self._end()
@@ -217,7 +222,7 @@ class Session:
 
     def _begin(self) -> None:
         self._lock = FolderLock(self.folder.path)
-        self.alone = self._lock.take()
+        self.alone: bool = self._lock.take()
         self.media = Media(self.folder.locate)
         store = ResultStore(self.folder.results)
         store.sweep()

@@ -83,7 +83,7 @@ def main() -> None:
 def gui_main() -> None:
     """Enter from a desktop, without a console."""
     check_engine()
-    raise SystemExit(run(["gui", *sys.argv[1:]]))
+    raise SystemExit(run(["gui", "--empty", *sys.argv[1:]]))
 
 
 def check_engine() -> None:

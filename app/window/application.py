@@ -13,9 +13,11 @@ from pathlib import Path
 from PySide6.QtCore import QMessageLogContext, QTimer, QtMsgType, qInstallMessageHandler
 from PySide6.QtWidgets import QApplication
 
+from app.actions.kinds import kind_of
 from app.actions.session import Session
 from app.window import fonts, icons, settings, theme
 from app.window.viewport.hosts import Choice
+from imitation.errors import InputError
 
 SLOW = ("app.window.viewport.scene", "scipy.sparse.linalg", "cv2", "numba", "imitation.deformation.deformer")
 """What the first 3D picture needs comes first, then what the first drag needs."""
@@ -53,29 +55,54 @@ def load_slow_libraries() -> threading.Thread:
     return thread
 
 
-def open_window(path: Path | None = None, *, sample: bool = False, viewport: Choice = "auto") -> int:
-    """Open the window on a project (or the sample, or an empty one) and run until it is closed; gives the exit code."""
+def open_window(path: Path | None = None, *, sample: bool = False, viewport: Choice | None = None) -> int:
+    """Open the window on a project (or the sample, or an empty one) and run until it is closed; gives the exit code.
+
+    A path that is no project is taken into an empty one; what cannot be opened is told in the window.
+    """
+    _need_a_screen()
     os.environ.setdefault("QT_API", "pyside6")
     qInstallMessageHandler(_heard)
     application = make_application()
     from app.window.shell import Shell
 
-    session = Session.open(path, recover=True) if path is not None else _first(sample)
-    shell = Shell(session, viewport=viewport)
+    session, refused = _first(path, sample)
+    shell = Shell(session, viewport=viewport or settings.viewport())
     geometry = settings.settings().value("geometry")
     if geometry is not None:
         shell.restoreGeometry(geometry)
     shell.show()
+    if refused:
+        shell.tell(refused)
+    elif path is not None and not session.titled:
+        shell.files.take(path)
+    shell.care.offer_never_saved()
     _after(load_slow_libraries)
     return application.exec()
 
 
-def _first(sample: bool) -> Session:
-    if not sample:
-        return Session.new()
-    from app.window.sample import sample_session
+def _need_a_screen() -> None:
+    """Raise ``InputError`` where Qt would end the program: Linux without a screen, and nothing said about it."""
+    told = any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM"))
+    if sys.platform == "linux" and not told:
+        raise InputError(
+            "There is no screen for a window: start a desktop session, or use the command line (motionwright --help)."
+        )
 
-    return sample_session()
+
+def _first(path: Path | None, sample: bool) -> tuple[Session, str]:
+    """The project to begin with, and why the one that was asked for cannot be opened."""
+    if path is None and sample:
+        from app.window.sample import sample_session
+
+        return sample_session(), ""
+    if path is None:
+        return Session.new(), ""
+    try:
+        known = kind_of(path)
+        return (Session.new() if known not in ("project", "") else Session.open(path)), ""
+    except (InputError, OSError) as error:
+        return Session.new(), str(error)
 
 
 def _after(call: Callable[[], object]) -> None:

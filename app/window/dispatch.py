@@ -10,11 +10,14 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import QApplication
 
+from app.model.edits import scene
 from app.window import settings, theme
+from app.window.background_state import measure
 from app.window.controls import renew_tooltips
 from app.window.key_map import key_map
 from app.window.key_sheet import KeySheet
 from app.window.keys import COMMANDS, keys_of
+from app.window.settings_dialog import SettingsDialog
 
 if TYPE_CHECKING:
     from app.window.shell import Shell
@@ -67,12 +70,28 @@ class Dispatch(QObject):
             "cancel": project.cancel_work,
             "cancel_work": project.cancel_work,
             "propagate": keeper.run_missing,
+            "clear_masks": lambda: project.edit(scene.clear_masks),
+            "measure_background": partial(measure, project),
+            "render": self._render,
             **{page: partial(shell.show_workspace, page) for page in shell.pages.workspaces},
             "history": lambda: shell.side.ask_for("history"),
             "log": lambda: shell.side.ask_for("log"),
             "light": self.switch_look,
-            "keys": lambda: KeySheet(shell).show(),
+            "keys": lambda: self._show(KeySheet),
+            "settings": lambda: self._show(SettingsDialog),
         }
+
+    def _render(self) -> None:
+        from app.window.render import open_render
+
+        open_render(self.shell)
+
+    def _show(self, kind: type[KeySheet | SettingsDialog]) -> None:
+        """Show a sheet; the one that is open already comes to the front."""
+        sheet = self.shell.findChild(kind) or kind(self.shell)
+        sheet.show()
+        sheet.raise_()
+        sheet.activateWindow()
 
     def switch_look(self) -> None:
         """Change between dark and light, now and at the next start."""

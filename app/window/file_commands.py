@@ -6,9 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.actions import bringing
+from PySide6.QtCore import QObject
+
+from app.actions import bringing, collecting
+from app.actions.kinds import kind_of
 from app.actions.session import Session
+from app.stages.job import Job
+from app.storage.folder import size_of
 from app.window import files, settings
+from app.window.project import Project
 from app.window.work import details
 from imitation.errors import InputError
 
@@ -16,11 +22,17 @@ if TYPE_CHECKING:
     from app.window.shell import Shell
 
 
-class FileCommands:
+LARGE = 64 << 20
+"""Bytes from which on a clip is looked through in the background."""
+
+
+class FileCommands(QObject):
     """Belongs to one window."""
 
     def __init__(self, shell: Shell) -> None:
+        super().__init__(shell)
         self.shell = shell
+        self._awaited: dict[Job, Callable[[Project, object], object]] = {}
 
     def command(self, name: str) -> bool:
         """Do a command; says whether it was one."""
@@ -31,6 +43,8 @@ class FileCommands:
             "sample_performance": self.sample_performance,
             "save": self.save,
             "save_as": self.save_as,
+            "save_as_whole": self.save_as_whole,
+            "collect": self.collect,
             "add_clip": lambda: self._with(files.ask_clip(self.shell), self.add_clip),
             "add_sequence": self.add_sequence,
             "add_character": lambda: self._with(files.ask_mesh(self.shell), self.add_character),
@@ -47,15 +61,18 @@ class FileCommands:
 
     def take(self, path: Path) -> None:
         """Do what a dropped file asks for."""
-        kind = files.kind_of(path)
-        if kind == "project":
-            self.open(path)
-        elif kind == "mesh":
-            self.add_character(path)
-        elif kind == "clip":
-            self.add_clip(path)
+        handlers: dict[str, Callable[[Path], object]] = {
+            "project": self.open,
+            "mesh": self.add_character,
+            "clip": self.add_clip,
+            "sequence": self.take_sequence,
+            "cameras": self.use_cameras,
+        }
+        handler = handlers.get(kind_of(path))
+        if handler is None:
+            self.shell.tell(f"{path.name} is no video, mesh, sequence, camera file or project: drop one of these.")
         else:
-            self.shell.tell(f"{path.name} is neither a video nor a mesh nor a project.")
+            handler(path)
 
     # projects ----------------------------------------------------------------------------------------------------
 
@@ -65,15 +82,9 @@ class FileCommands:
             self._guard(lambda: self.shell.open_session(Session.new()))
 
     def open(self, path: Path) -> None:
-        """Open a project; unsaved work of a run that ended badly is taken along, as an entry that undo takes back."""
+        """Open a project; the window asks about unsaved work of a run that ended badly."""
         if self.may_leave():
-            self._guard(lambda: self._opened(Session.open(path, recover=True)))
-
-    def _opened(self, session: Session) -> None:
-        settings.remember_project(session.folder.path)
-        self.shell.open_session(session)
-        if session.history.undo_label is not None:
-            self.shell.tell_note("Unsaved work of the last run was recovered. Undo goes back to the saved project.")
+            self._guard(lambda: self.shell.open_session(Session.open(path)))
 
     def sample(self) -> None:
         """Open the sample project, as one that has no place yet."""
@@ -94,22 +105,96 @@ class FileCommands:
         project = self.shell.project
         if project is None:
             return False
-        return project.save() if project.session.titled else self.save_as()
+        return self._saved(project, project.session.save) if project.session.titled else self.save_as()
 
     def save_as(self) -> bool:
-        """Ask for a place and save there."""
+        """Ask for a place and save there; media stay where they are, and the window asks whether they shall."""
         project = self.shell.project
-        path = files.ask_place(self.shell, project) if project is not None else None
-        if project is None or path is None or not project.save(path):
+        if project is None or not self._save_elsewhere(project):
+            return False
+        linked = collecting.linked_media(project.document)
+        if linked:
+            first = Path(linked[0].path).name
+            which = f"{first} stays where it is" if len(linked) == 1 else f"{len(linked)} media stay where they are"
+            size = collecting.linked_size(project.document, project.session.folder)
+            self.shell.care.notices.ask(
+                "collect",
+                f"Saved. {which}, and the project remembers where.",
+                (f"Copy into the project ({in_megabytes(size)})", self.collect),
+                ("Leave there", lambda: None),
+                level="note",
+            )
+        return True
+
+    def save_as_whole(self) -> bool:
+        """Ask for a place, save there, and copy all media into the project."""
+        project = self.shell.project
+        if project is None or not self._save_elsewhere(project):
+            return False
+        self.collect()
+        return True
+
+    def collect(self) -> None:
+        """Copy media that lie outside into the project, in the background; one entry of the history."""
+        project = self.shell.project
+        if project is None:
+            return
+        document, folder = project.document, project.session.folder
+        if not collecting.linked_media(document):
+            self.shell.tell_note("All media lie in the project already.")
+            return
+        job = project.call("Copying media", lambda tell: collecting.copied_media(document, folder, folder, tell))
+        self._await(project, job, self._collected)
+
+    def _collected(self, project: Project, copies: collecting.Copies) -> None:
+        self._guard(lambda: project.session.apply(collecting.use_copies(project.document, copies)))
+        if project.session.titled and self._saved(project, project.session.save):
+            self.shell.tell_note("All media lie in the project now.")
+
+    def _save_elsewhere(self, project: Project) -> bool:
+        path = files.ask_place(self.shell, project)
+        if path is None or not self._saved(project, lambda: project.session.save_as(path)):
             return False
         settings.remember_project(project.session.folder.path)
         return True
 
+    def _saved(self, project: Project, save: Callable[[], object]) -> bool:
+        """Save, show it, and keep a small picture for the welcome; where it fails, say why and offer another place."""
+        notices = self.shell.care.notices
+        try:
+            save()
+        except (InputError, OSError) as error:
+            self.shell.side.log.add(str(error), details(error))
+            notices.ask(
+                "save",
+                f"The project was not saved. {error}",
+                ("Save as…", self.save_as),
+                ("Try again", self.save),
+                ("Later", lambda: None),
+                level="error",
+            )
+            return False
+        for name in ("save", "autosave", "collect"):
+            notices.drop(name)
+        self.shell.care.keep_thumbnail()
+        project.saved_changed.emit()
+        return True
+
+    def _await(self, project: Project, job: Job, done: Callable[[Project, object], object]) -> None:
+        """Call ``done`` in the window's thread when a job has ended well."""
+        self._awaited[job] = done
+        project.job_ended.connect(self._ended)
+        if job.state != "running" and job not in project.progress:
+            self._ended(job)
+
+    def _ended(self, job: Job) -> None:
+        done, project = self._awaited.pop(job, None), self.shell.project
+        if done is not None and project is not None and job.state == "done":
+            done(project, job.value)
+
     def autosave(self) -> None:
         """Write unsaved work beside the project."""
-        project = self.shell.project
-        if project is not None:
-            self._guard(project.session.autosave)
+        self.shell.care.autosave()
 
     def may_leave(self) -> bool:
         """Whether the open project may be closed; asks where it has unsaved changes."""
@@ -124,10 +209,28 @@ class FileCommands:
     # bringing in and out -----------------------------------------------------------------------------------------
 
     def add_clip(self, path: Path) -> None:
-        """Take a video into the project."""
+        """Take a video into the project; a large one is looked through in the background."""
+        project = self.shell.project
+        if project is None:
+            return
+        session, large = project.session, path.is_dir() or size_of(path) > LARGE
+        if not large:
+            self._guard(lambda: bringing.add_clip(session, path))
+            return
+        job = project.call(f"Reading {path.name}", lambda _: bringing.read_clip(session, path))
+        take = bringing.take_clip
+        self._await(project, job, lambda project, clip: self._guard(lambda: take(project.session, clip, path.stem)))
+
+    def use_cameras(self, path: Path) -> None:
+        """Take the cameras from another program's file."""
         project = self.shell.project
         if project is not None:
-            self._guard(lambda: bringing.add_clip(project.session, path))
+            self._guard(lambda: bringing.use_camera_file(project.session, path))
+
+    def take_sequence(self, path: Path) -> None:
+        """Take a captured sequence into the project and show it."""
+        self.shell.show_workspace("performance")
+        self.shell.performance.library.add(path)
 
     def add_sequence(self) -> None:
         """Show the Motion graph, which asks for a sequence."""
@@ -157,17 +260,28 @@ class FileCommands:
         path = files.ask_export(self.shell, character.name)
         if path is None:
             return
-        from app.actions.results import export_animation
+        from app.actions.rendering import write_motion
 
-        session = project.session
-        self.shell.calls.run(
-            lambda: export_animation(session, character.id, path),
-            lambda _: self.shell.tell_note(f"{character.name} was written to {path.name}."),
-            lambda error: self.shell.tell(str(error), details(error)),
+        still = project.session.as_it_is()
+        job = project.call(
+            f"Exporting {path.name}", lambda progress: write_motion(still, character.id, path, None, progress)
         )
+
+        def ended(other: Job) -> None:
+            if other is job:
+                project.job_ended.disconnect(ended)
+                if job.state == "done":
+                    self.shell.tell_note(f"{character.name} was written to {path.name}.")
+
+        project.job_ended.connect(ended)
 
     def _guard(self, call: Callable[[], object]) -> None:
         try:
             call()
         except (InputError, ValueError, OSError) as error:
             self.shell.tell(str(error), details(error))
+
+
+def in_megabytes(size: int) -> str:
+    """A size as people say it."""
+    return f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(size / 1e6, 0.1):.1f} MB"

@@ -2,30 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 from PySide6.QtWidgets import QFileDialog, QMessageBox, QWidget
 
+from app.actions.kinds import GLTF, MESHES, VIDEOS
+from app.actions.lost_media import LostMedium
 from app.storage.folder import SUFFIX
+from app.window import settings
 from app.window.project import Project
 
-VIDEOS = {".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v"}
-MESHES = {".ply", ".obj", ".off", ".stl"}
 VIDEO_FILTER = f"Videos ({' '.join('*' + suffix for suffix in sorted(VIDEOS))});;All files (*)"
-MESH_FILTER = f"Meshes ({' '.join('*' + suffix for suffix in sorted(MESHES))});;All files (*)"
+MESH_FILTER = f"Meshes ({' '.join('*' + suffix for suffix in sorted(MESHES | GLTF))});;All files (*)"
 EXPORT_FILTER = "Animated GLB (*.glb);;Universal Scene Description (*.usd);;NumPy (*.npz)"
 
 
 def ask_project(parent: QWidget) -> Path | None:
     """Ask for a project folder."""
-    chosen = QFileDialog.getExistingDirectory(parent, "Open a project", str(Path.home()))
+    recent = settings.recent_projects()
+    start = recent[0].parent if recent else Path.home()
+    chosen = QFileDialog.getExistingDirectory(parent, "Open a project", str(start))
     return Path(chosen) if chosen else None
 
 
 def ask_place(parent: QWidget, project: Project) -> Path | None:
     """Ask where to save."""
-    start = Path.home() / f"{project.document.name}{SUFFIX}"
+    folder = project.session.folder.path.parent if project.session.titled else Path.home()
+    start = folder / f"{project.document.name}{SUFFIX}"
     chosen, _ = QFileDialog.getSaveFileName(parent, "Save the project", str(start), f"Motionwright (*{SUFFIX})")
     return Path(chosen) if chosen else None
 
@@ -63,15 +66,19 @@ def ask_unsaved(parent: QWidget, name: str) -> str:
     return {save: "save", discard: "discard"}.get(box.clickedButton(), "stay")
 
 
-def kind_of(path: Path) -> str:
-    """What a dropped file is: project, clip, mesh, or nothing that is known."""
-    if path.suffix == SUFFIX or path.name == "project.json":
-        return "project"
-    if path.suffix.lower() in MESHES:
-        return "mesh"
-    if path.suffix.lower() in VIDEOS or path.is_dir():
-        return "clip"
-    return ""
+def ask_medium(parent: QWidget, lost: LostMedium) -> Path | None:
+    """Ask where a medium lies now; a folder of pictures or meshes is asked for as a folder."""
+    title, start = f"Where is {lost.name}?", str(_nearest(Path(lost.media.path).parent))
+    if not Path(lost.name).suffix:
+        chosen = QFileDialog.getExistingDirectory(parent, title, start)
+    else:
+        same = f"{lost.name} ({lost.name});;All files (*)"
+        chosen, _ = QFileDialog.getOpenFileName(parent, title, start, same)
+    return Path(chosen) if chosen else None
 
 
-Ask = Callable[..., Path | None]
+def _nearest(folder: Path) -> Path:
+    """The folder, or what is left of the way to it."""
+    while not folder.is_dir() and folder != folder.parent:
+        folder = folder.parent
+    return folder if folder.is_absolute() else Path.home()

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from PySide6.QtCore import QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent, QImage, QResizeEvent
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragLeaveEvent, QDropEvent, QImage, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from app.actions.session import Session
 from app.model.document import Document
-from app.window import files, icons, settings
+from app.window import icons, settings
 from app.window.background_call import BackgroundCalls
+from app.window.care import Care
 from app.window.character import CharacterWorkspace
 from app.window.dispatch import Dispatch
+from app.window.drops import Drops
 from app.window.file_commands import FileCommands
 from app.window.navigation import Navigator
 from app.window.opening import Opened
@@ -29,7 +29,6 @@ from app.window.viewport.hosts import Choice
 from app.window.welcome import Welcome
 from app.window.workspaces import Pages, Workspace, first_workspace
 
-AUTOSAVE = 60_000
 LOW = 800
 """Pixels of height below which the lanes are one line each."""
 
@@ -53,13 +52,12 @@ class Shell(QMainWindow):
         self.side = SidePanel()
         self.calls = BackgroundCalls(self)
         self.files = FileCommands(self)
+        self.care = Care(self)
         self.navigator = Navigator(lambda: self.project, self)
         self._build()
         self._connect()
         self.dispatch = Dispatch(self)
-        self._autosave = QTimer(self)
-        self._autosave.setInterval(AUTOSAVE)
-        self._autosave.timeout.connect(self.files.autosave)
+        self.drops = Drops(self)
         self._lanes = QTimer(self)
         self._lanes.setSingleShot(True)
         self._lanes.setInterval(60)
@@ -86,6 +84,7 @@ class Shell(QMainWindow):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         column.addWidget(self.bar)
+        column.addWidget(self.care.notices)
         column.addWidget(body, 1)
         column.addWidget(self.status)
         self.setCentralWidget(central)
@@ -132,9 +131,9 @@ class Shell(QMainWindow):
         self.bar.show_work(project)
         self.side.attach(project)
         self.show_workspace(first_workspace(project.document))
-        self._autosave.start()
         self.setFocus()
         opened.keeper.keep_up()
+        self.care.attach(project)
 
     def _attach(self) -> None:
         """Tie everything that shows frames to the clip."""
@@ -150,7 +149,7 @@ class Shell(QMainWindow):
 
     def _close_project(self) -> None:
         self.navigator.playback.stop()
-        self._autosave.stop()
+        self.care.detach()
         for workspace in self.pages.workspaces.values():
             workspace.detach()
         opened, self.opened = self.opened, None
@@ -165,6 +164,8 @@ class Shell(QMainWindow):
         self.bar.show_workspace(name)
         self.split.workspace = name
         self.pages.choose(name, self.project.document if self.project is not None else None)
+        if self.pages.welcoming:
+            self.status.show_hint(self.welcome.HINT)
         self.timeline.setVisible(not self.pages.welcoming and not self.in_sight().own_timeline)
         if self._picture is not None:
             self.in_sight().show_picture(*self._picture)
@@ -221,6 +222,11 @@ class Shell(QMainWindow):
         self.in_sight().show_picture(frame, picture)
 
     @property
+    def picture(self) -> QImage | None:
+        """The frame in sight."""
+        return self._picture[1] if self._picture is not None else None
+
+    @property
     def workspace(self) -> str:
         """Name of the workspace chosen."""
         return self.pages.name
@@ -230,7 +236,7 @@ class Shell(QMainWindow):
         return self.pages.in_sight
 
     def _hint(self, sentence: str) -> None:
-        if self.sender() is self.in_sight():
+        if self.sender() is self.in_sight() and not self.pages.welcoming:
             self.status.show_hint(sentence)
 
     def _shown_at(self, frame: int, sentence: str) -> None:
@@ -261,16 +267,16 @@ class Shell(QMainWindow):
     # dropping and closing ----------------------------------------------------------------------------------------
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        """Take files that are known."""
-        paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
-        if any(files.kind_of(path) for path in paths):
-            event.acceptProposedAction()
+        """Say what a drop would do."""
+        self.drops.enter(event)
+
+    def dragLeaveEvent(self, event: QDragLeaveEvent) -> None:
+        """Say it no longer."""
+        self.drops.leave()
 
     def dropEvent(self, event: QDropEvent) -> None:
-        """Open a project, or bring a video or a mesh in."""
-        for url in event.mimeData().urls():
-            self.files.take(Path(url.toLocalFile()))
-        event.acceptProposedAction()
+        """Open a project, or bring files in."""
+        self.drops.drop(event)
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Ask about unsaved changes, then end every thread and close the render window."""

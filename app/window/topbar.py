@@ -5,16 +5,22 @@ from __future__ import annotations
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QProgressBar, QToolButton, QWidget
 
-from app.window import icons
+from app.window import icons, settings
 from app.window.controls import Elided, button, icon_button, label, set_tooltip
 from app.window.keys import COMMANDS, shown_key
 from app.window.project import Project
 
+MENU_TOO = ("history", "log", "light", "keys", "settings")
+"""Commands of other groups that are in the menu as well."""
+SEPARATED = ("save", "add_clip", "history", "export")
+"""Commands above which the menu has a line."""
+
 
 class TopBar(QWidget):
-    """Says what is open and what runs; ``wanted`` names the command that is asked for."""
+    """Says what is open and what runs; ``wanted`` names the command that is asked for, ``project_wanted`` a project."""
 
     wanted = Signal(str)
+    project_wanted = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -55,14 +61,31 @@ class TopBar(QWidget):
 
     def _menu(self) -> QMenu:
         menu = QMenu(self)
-        for command in COMMANDS:
-            if command.group == "Project" or command.id in ("history", "log", "light", "keys"):
-                if command.id in ("add_clip", "history", "export"):
-                    menu.addSeparator()
-                action = menu.addAction(command.text, lambda id_=command.id: self.wanted.emit(id_))
-                key = shown_key(command.id)
-                action.setText(f"{command.text}\t{key}" if key else command.text)
+        menu.setToolTipsVisible(True)
+        menu.aboutToShow.connect(lambda: self._fill(menu))
+        self._fill(menu)
         return menu
+
+    def _fill(self, menu: QMenu) -> None:
+        """Every command of the project with the key that it has now, and the projects opened lately."""
+        menu.clear()
+        for command in COMMANDS:
+            if command.group == "Project" or command.id in MENU_TOO:
+                if command.id in SEPARATED:
+                    menu.addSeparator()
+                key = shown_key(command.id)
+                text = f"{command.text}\t{key}" if key else command.text
+                menu.addAction(text, lambda id_=command.id: self.wanted.emit(id_))
+                if command.id == "open":
+                    self._add_recent(menu)
+
+    def _add_recent(self, menu: QMenu) -> None:
+        recent = menu.addMenu("Open recent")
+        for path in settings.recent_projects():
+            action = recent.addAction(path.stem, lambda path=path: self.project_wanted.emit(path))
+            action.setToolTip(str(path))
+        recent.setToolTipsVisible(True)
+        recent.setEnabled(not recent.isEmpty())
 
     def _tabs(self) -> QHBoxLayout:
         row = QHBoxLayout()

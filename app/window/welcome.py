@@ -1,18 +1,27 @@
-"""What an empty project shows: one sentence, one thing to do, and the sample."""
+"""What an empty project shows: one sentence, one thing to do, the sample, and the projects opened lately."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
+from datetime import datetime
+from pathlib import Path
 
-from app.window import icons
+from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QIcon, QPainter, QPixmap, QShowEvent
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+
+from app.window import icons, settings, theme
 from app.window.controls import ErrorBar, Panel, button, label
+
+CARD = QSize(176, 99)
+SHOWN = 4
 
 
 class Welcome(Panel):
-    """Lies where the picture will be."""
+    """Lies where the picture will be. ``wanted`` names a command that is asked for, ``project_wanted`` a project."""
 
     wanted = Signal(str)
+    project_wanted = Signal(object)
+    HINT = "Drop a video, a mesh, a folder of pictures or meshes, or a project anywhere on the window."
 
     def __init__(self) -> None:
         super().__init__()
@@ -26,7 +35,8 @@ class Welcome(Panel):
         picture.setPixmap(icons.pixmap("video", "text3", 56))
         sentence = label("Open a video, or drop one here.", "brand")
         how = label(
-            "Motionwright follows points that you click on a filmed animal or person, and moves a character like it.",
+            "Motionwright follows points that you click on a filmed animal or person, and moves a character like it.\n"
+            "Captured sequences of meshes are cut into motions and composed anew: drop a folder of them.",
             "label",
         )
         for widget in (picture, sentence, how):
@@ -43,5 +53,79 @@ class Welcome(Panel):
         row.addStretch(1)
         column.addSpacing(8)
         column.addLayout(row)
-        column.addStretch(3)
+        column.addStretch(1)
+        column.addWidget(self._lately())
+        column.addStretch(2)
         self.column.addWidget(body, 1)
+
+    def _lately(self) -> QWidget:
+        self.lately = QWidget()
+        column = QVBoxLayout(self.lately)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(10)
+        heading = label("Opened lately", "title")
+        heading.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        column.addWidget(heading)
+        self._cards = QHBoxLayout()
+        self._cards.setSpacing(12)
+        column.addLayout(self._cards)
+        self.cards: list[QToolButton] = []
+        return self.lately
+
+    def showEvent(self, event: QShowEvent) -> None:
+        """Look which projects are still there."""
+        self.show_lately(settings.recent_projects())
+        super().showEvent(event)
+
+    def show_lately(self, projects: list[Path]) -> None:
+        """Show the projects opened lately, the last first."""
+        while (item := self._cards.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.hide()
+                widget.deleteLater()
+        self.cards = [self._card(path) for path in projects[:SHOWN]]
+        self._cards.addStretch(1)
+        for card in self.cards:
+            self._cards.addWidget(card)
+        self._cards.addStretch(1)
+        self.lately.setVisible(bool(self.cards))
+
+    def _card(self, path: Path) -> QToolButton:
+        card = QToolButton()
+        card.setProperty("card", "true")
+        card.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
+        card.setIcon(QIcon(picture_of(path)))
+        card.setIconSize(CARD)
+        card.setFixedSize(CARD.width() + 16, CARD.height() + 56)
+        name = card.fontMetrics().elidedText(path.stem, Qt.TextElideMode.ElideRight, CARD.width())
+        card.setText(f"{name}\n{when_saved(path)}")
+        card.setToolTip(str(path))
+        card.setAccessibleName(f"Open the project {path.stem}")
+        card.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        card.clicked.connect(lambda: self.project_wanted.emit(path))
+        return card
+
+
+def picture_of(project: Path) -> QPixmap:
+    """The picture kept of a project when it was saved, on a dark ground of one size; without one, an icon."""
+    made = QPixmap(CARD)
+    made.fill(theme.active().colour("canvas"))
+    kept = QPixmap(str(settings.thumbnail_of(project)))
+    painter = QPainter(made)
+    if kept.isNull():
+        kept = icons.pixmap("video", "text3", 32)
+    else:
+        kept = kept.scaled(CARD, Qt.AspectRatioMode.KeepAspectRatio, Qt.TransformationMode.SmoothTransformation)
+    painter.drawPixmap((CARD.width() - kept.width()) // 2, (CARD.height() - kept.height()) // 2, kept)
+    painter.end()
+    return made
+
+
+def when_saved(project: Path) -> str:
+    """The day of the last save as people say it."""
+    try:
+        day = datetime.fromtimestamp((project / "project.json").stat().st_mtime).astimezone()
+    except OSError:
+        return ""
+    days = (datetime.now().astimezone().date() - day.date()).days
+    return {0: "today", 1: "yesterday"}.get(days, f"{day.day} {day:%B %Y}")

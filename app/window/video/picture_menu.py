@@ -35,6 +35,7 @@ def picture_menu(parent: QWidget, do: Callable[[str], object], track: Track | No
         entry("delete", "Remove this click" if clicked and len(track.clicks) > 1 else "Delete point")
     elif part:
         entry("delete", "Remove this corner" if part.startswith("corner") else "Remove this lasso")
+        entry("clear_masks")
     else:
         entry("tool_point")
         entry("tool_lasso")
