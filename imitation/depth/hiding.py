@@ -10,6 +10,7 @@ from imitation.errors import InputError
 
 ALIKE = 24.0
 """Levels, the worst channel, up to which a frame shows what its plate says that the background looks like."""
+STRAYS = 3.0
 SMOOTH = 1.0  # pixels: single noisy pixels do not decide
 
 
@@ -34,6 +35,9 @@ def hiding_depth(picture: NDArray[np.uint8], plate: Plate) -> NDArray[np.float32
 
     Depth behind the subject is measured from other frames only and strays; but where the frame itself shows the
     subject, nothing stands before it, and so nothing stands before who takes its place. A character that stands much
-    farther away than the subject is hidden too little there.
+    farther away than the subject is hidden too little there. Where the frame shows what may as well be the subject, a
+    white leg before a white step, depth must be nearer by more than it strays: ``STRAYS`` steps of its search.
     """
-    return np.where(shown_background(picture, plate), plate.depth.depth, np.nan).astype(np.float32)
+    hole = plate.filled | plate.invented
+    depth = np.where(shown_background(picture, plate), plate.depth.depth, np.nan)
+    return np.where(hole, depth * (1 + STRAYS * plate.depth.tolerance), depth).astype(np.float32)

@@ -16,7 +16,7 @@ from imitation import CameraPath
 from imitation.cameras import solve_cameras
 from imitation.depth import Background, DepthMap, DepthSolver, background_mesh, joined_mesh
 from tests.benchmarks.record import Recorder
-from tests.imitation.depth.scenes import World, distance_to, filmed_room, ray_cast
+from tests.imitation.depth.scenes import HARD, World, distance_to, filmed_room, ray_cast
 
 pytestmark = [pytest.mark.bench, pytest.mark.timeout(3600)]
 
@@ -50,7 +50,7 @@ def run(world: World, cameras: CameraPath | None = None, keys: list[int] | None 
 @functools.lru_cache(maxsize=2)
 def room(seed: int) -> Run:
     """A room with exact cameras; solved twice, so that compiling is not timed."""
-    world = filmed_room(seed)
+    world = filmed_room(seed, textures=HARD)
     warm = DepthSolver(world.frames, world.cameras, world.masks)
     sketches = {t: warm.first(t, KEYS) for t in KEYS[:2]}
     warm.second(0, sketches)
@@ -179,7 +179,7 @@ def test_depth_with_slightly_wrong_cameras(bench: Recorder) -> None:
 
 def test_depth_at_960(bench: Recorder) -> None:
     """960 x 540, five key frames as the prototype had, frame 20."""
-    each = run(filmed_room(SEEDS[1], (960, 540)), keys=[4, 12, 20, 28, 36])
+    each = run(filmed_room(SEEDS[1], (960, 540), textures=HARD), keys=[4, 12, 20, 28, 36])
     ours, plain = errors(each.maps[20].depth, each, 20), errors(1 / each.first[20].inverse, each, 20)
     name = "the same views, no prior"
     bench.record("depth 960 x 540, exact cameras: mean error", 100 * ours.mean(), asked=0.28, unit="%",
@@ -198,7 +198,7 @@ def psnr(first: np.ndarray, second: np.ndarray) -> float:
 def test_the_hole_behind_the_subject(bench: Recorder) -> None:
     """Filled share and PSNR over the whole hole, worst of three frames, beside inpainting alone."""
     each = room(SEEDS[0])
-    clean = filmed_room(SEEDS[0], blob=False).frames
+    clean = filmed_room(SEEDS[0], blob=False, textures=HARD).frames
     background = Background(
         each.world.frames, each.world.cameras, list(each.maps.values()), masks=each.world.masks
     )  # fmt: skip
@@ -246,7 +246,7 @@ def test_the_edge_of_occlusion(bench: Recorder) -> None:
     world, frame = each.world, 32
     background = Background(world.frames, world.cameras, list(each.maps.values()), masks=world.masks)
     plate = background.plate(frame)
-    clean = filmed_room(SEEDS[0], blob=False)
+    clean = filmed_room(SEEDS[0], blob=False, textures=HARD)
     camera = world.cameras[frame]
     figures: dict[str, list[float]] = {"none": [], "hard": [], "soft": []}
     for centre in ((-1.15, 2.9, 0.75), (0.3, 1.3, 0.9), (1.2, 2.5, 0.7)):

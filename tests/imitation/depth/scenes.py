@@ -118,32 +118,59 @@ def _box(
     return [_sheet(random, *face, density, contrast) for face in faces]
 
 
-def parts_of(seed: int, weak_contrast: float) -> tuple[list[Rectangle], list[Rectangle]]:
+@attrs.frozen
+class Textures:
+    """How strongly the room is textured.
+
+    Attributes
+    ----------
+    strong, weak : contrast of most surfaces and of the weakly textured ones. wide : metres of the back wall of these.
+    """
+
+    strong: float = 1.0
+    weak: float = 0.12
+    wide: float = 8.8
+
+
+PLAIN = Textures()
+HARD = Textures(1.33, 0.035, 1.6)
+"""As hard as the scene on which the recipe was developed, by what needs no prior: the sweep of one pass finds 93 % of
+the pixels within 1 % there, inpainting alone 15 to 17 dB."""
+
+
+def parts_of(seed: int, textures: Textures = PLAIN) -> tuple[list[Rectangle], list[Rectangle]]:
     """All rectangles from far to near, and the weakly textured ones."""
     random = np.random.default_rng(seed)
     a, b, c, d = random.uniform(-0.08, 0.08, 4)
-    weak_wall = _sheet(random, (1.2, 6.0, 6), (8.8, 0, 0), (0, 0, -6), 90, weak_contrast)
-    parts = [
-        _sheet(random, (-8, 6.0, 6), (9.2, 0, 0), (0, 0, -6), 90),
-        weak_wall,
-        _sheet(random, (-8, 6.0, 0), (16, 0, 0), (0, -9.0, 0), 70),
-        _sheet(random, (-4.4, 4.9, 4), (1.4, 1.0, 0), (0, 0, -4), 90),
+    strong, weak, wide = textures.strong, textures.weak, textures.wide
+    weak_wall = _sheet(random, (1.2, 6.0, 6), (wide, 0, 0), (0, 0, -6), 90, weak)
+    parts = [_sheet(random, (-8, 6.0, 6), (9.2, 0, 0), (0, 0, -6), 90, strong), weak_wall]
+    if wide < PLAIN.wide:
+        parts.append(_sheet(random, (1.2 + wide, 6.0, 6), (8.8 - wide, 0, 0), (0, 0, -6), 90, strong))
+    parts += [
+        _sheet(random, (-8, 6.0, 0), (16, 0, 0), (0, -9.0, 0), 70, strong),
+        _sheet(random, (-4.4, 4.9, 4), (1.4, 1.0, 0), (0, 0, -4), 90, strong),
     ]
     for step in range(5):  # the farthest, highest first: tread, then riser
         y, z, deep = 4.2 - 0.34 * step, 0.85 - 0.17 * step, 1.8 if step == 0 else 0.34
-        parts.append(_sheet(random, (1.9 + d, y + deep, z), (2.3, 0, 0), (0, -deep, 0), 90))
-        parts.append(_sheet(random, (1.9 + d, y, z), (2.3, 0, 0), (0, 0, -0.17), 90))
-    parts += _box(random, (-1.6 + a, 1.6, 0), (-0.7 + a, 2.4, 0.95), 110)
-    weak_box = _box(random, (0.75 + b, 1.2, 0), (1.65 + b, 2.0, 0.8), 110, weak_contrast)
+        parts.append(_sheet(random, (1.9 + d, y + deep, z), (2.3, 0, 0), (0, -deep, 0), 90, strong))
+        parts.append(_sheet(random, (1.9 + d, y, z), (2.3, 0, 0), (0, 0, -0.17), 90, strong))
+    parts += _box(random, (-1.6 + a, 1.6, 0), (-0.7 + a, 2.4, 0.95), 110, strong)
+    weak_box = _box(random, (0.75 + b, 1.2, 0), (1.65 + b, 2.0, 0.8), 110, weak)
     parts += weak_box
-    parts += _box(random, (0.22 + c, 0.5, 0), (0.29 + c, 0.57, 2.6), 160)
+    parts += _box(random, (0.22 + c, 0.5, 0), (0.29 + c, 0.57, 2.6), 160, strong)
     return parts, [weak_wall, *weak_box]
 
 
 def filmed_room(
-    seed: int = 0, size: tuple[int, int] = (480, 270), frames: int = 40, *, blob: bool = True, weak: float = 0.12
+    seed: int = 0,
+    size: tuple[int, int] = (480, 270),
+    frames: int = 40,
+    *,
+    blob: bool = True,
+    textures: Textures = PLAIN,
 ) -> World:
     """Film the room from the side; a textured blob passes in front of it."""
-    parts, weakly = parts_of(seed, weak)
+    parts, weakly = parts_of(seed, textures)
     cameras = lateral_camera(frames, seed=seed, size=size)
     return World(film(parts, cameras, size, blob=blob, seed=seed), parts, weakly, size)

@@ -72,6 +72,9 @@ def test_nothing_hides_where_the_frame_shows_the_subject(solved: Solved) -> None
     before[post] = plate.picture[post]
     inner = post & (np.abs(np.arange(picture.shape[1])[None] - middle) <= 2)
     assert shown_background(before, plate)[inner].mean() > 0.95
+    known = np.isfinite(hiding_depth(before, plate)) & inner
+    strayed = hiding_depth(before, plate)[known] / plate.depth.depth[known] - 1
+    np.testing.assert_allclose(strayed, 3 * plate.depth.tolerance, rtol=1e-3)
     painted = attrs.evolve(plate, filled=np.zeros_like(plate.filled), invented=plate.filled | plate.invented)
     assert not shown_background(before, painted)[inner].any(), "what was painted in says nothing of what is there"
     with pytest.raises(InputError, match="its plate is"):
