@@ -55,6 +55,7 @@ class Session:
         self._listeners: list[Changed] = []
         self._stages: tuple[Document, Stages] | None = None
         self._thread = threading.get_ident()
+        self.alone = True
         self._begin()
 
     @classmethod
@@ -211,7 +212,8 @@ class Session:
 
     def look_again(self) -> bool:
         """Whether no other program has the project open now; one that had it may have closed it since."""
-        self.alone = self.alone or self._lock.take()
+        if not self.alone:
+            self.alone = self._lock.take()
         return self.alone
 
     def close(self) -> None:
@@ -222,7 +224,7 @@ class Session:
 
     def _begin(self) -> None:
         self._lock = FolderLock(self.folder.path)
-        self.alone: bool = self._lock.take()
+        self.alone = self._lock.take()
         self.media = Media(self.folder.locate)
         store = ResultStore(self.folder.results)
         store.sweep()

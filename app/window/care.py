@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, QSize, Qt, QTimer
 from app.actions import lost_media, recovery
 from app.actions.lost_media import LostMedium
 from app.actions.recovery import UnsavedWork
+from app.model.edits import scene
 from app.window import files, settings
 from app.window.notices import Notices
 from app.window.project import Project
@@ -20,7 +21,8 @@ from imitation.errors import InputError
 if TYPE_CHECKING:
     from app.window.shell import Shell
 
-THUMBNAIL = QSize(320, 180)
+THUMBNAIL = QSize(352, 198)
+"""Pixels of the pictures of projects: twice the size they are shown in, for fine screens."""
 LOST = "lost "
 """Begins the names of questions about media."""
 
@@ -37,6 +39,7 @@ class Care(QObject):
         self._told = ""
         for place in (shell.bar, shell.welcome):
             place.project_wanted.connect(shell.files.open)
+        shell.bar.name.renamed.connect(self._rename)
 
     def attach(self, project: Project) -> None:
         """Look after another project."""
@@ -81,6 +84,12 @@ class Care(QObject):
             target.parent.mkdir(parents=True, exist_ok=True)
             smooth = Qt.TransformationMode.SmoothTransformation
             picture.scaled(THUMBNAIL, Qt.AspectRatioMode.KeepAspectRatio, smooth).save(str(target))
+
+    def _rename(self, name: str) -> None:
+        project = self.shell.project
+        if project is not None:
+            project.edit(scene.rename, name)
+            self.shell.bar.show_document(project)
 
     def set_memory(self) -> None:
         """Let results take as much memory as the settings say."""

@@ -11,8 +11,9 @@ from PySide6.QtCore import QObject
 from app.actions import bringing, collecting
 from app.actions.kinds import kind_of
 from app.actions.session import Session
+from app.model.edits import scene
 from app.stages.job import Job
-from app.storage.folder import size_of
+from app.storage.folder import SUFFIX, size_of
 from app.window import files, settings
 from app.window.project import Project
 from app.window.work import details
@@ -153,7 +154,11 @@ class FileCommands(QObject):
 
     def _save_elsewhere(self, project: Project) -> bool:
         path = files.ask_place(self.shell, project)
-        if path is None or not self._saved(project, lambda: project.session.save_as(path)):
+        if path is None:
+            return False
+        if project.document.name == "Untitled":
+            project.edit(scene.rename, path.name.removesuffix(SUFFIX))
+        if not self._saved(project, lambda: project.session.save_as(path)):
             return False
         settings.remember_project(project.session.folder.path)
         return True

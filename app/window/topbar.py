@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QProgress
 from app.window import icons, settings
 from app.window.controls import Elided, button, icon_button, label, set_tooltip
 from app.window.keys import COMMANDS, shown_key
+from app.window.name_field import NameField
 from app.window.project import Project
 
 MENU_TOO = ("history", "log", "light", "keys", "settings")
@@ -50,7 +51,7 @@ class TopBar(QWidget):
         self.menu_button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.menu_button.setStyleSheet("QToolButton::menu-indicator { image: none; }")
         self.menu_button.setMenu(self._menu())
-        self.name = label("", "title")
+        self.name = NameField()
         self.state = Elided("", "caption")
         row.addWidget(mark)
         row.addWidget(label("Motionwright", "brand"))
@@ -142,7 +143,7 @@ class TopBar(QWidget):
     def show_document(self, project: Project) -> None:
         """Show name, save state and what undo would do."""
         history = project.session.history
-        self.name.setText(project.document.name)
+        self.name.show_name(project.document.name)
         saved = "unsaved changes" if history.modified else "saved"
         state = saved if project.session.titled else "not saved yet"
         self.state.setText(f"·  {state}")

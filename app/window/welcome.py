@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from pathlib import Path
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QIcon, QPainter, QPixmap, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
@@ -94,7 +94,7 @@ class Welcome(Panel):
         card = QToolButton()
         card.setProperty("card", "true")
         card.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextUnderIcon)
-        card.setIcon(QIcon(picture_of(path)))
+        card.setIcon(QIcon(picture_of(path, self.devicePixelRatio())))
         card.setIconSize(CARD)
         card.setFixedSize(CARD.width() + 16, CARD.height() + 56)
         name = card.fontMetrics().elidedText(path.stem, Qt.TextElideMode.ElideRight, CARD.width())
@@ -106,17 +106,23 @@ class Welcome(Panel):
         return card
 
 
-def picture_of(project: Path) -> QPixmap:
-    """The picture kept of a project when it was saved, on a dark ground of one size; without one, an icon."""
-    made = QPixmap(CARD)
+def picture_of(project: Path, ratio: float = 1.0) -> QPixmap:
+    """The picture kept of a project when it was saved, on a ground of one size; without one, an icon.
+
+    ratio : device pixels per pixel of the window.
+    """
+    made = QPixmap(CARD * ratio)
+    made.setDevicePixelRatio(ratio)
     made.fill(theme.active().colour("canvas"))
-    kept = QPixmap(str(settings.thumbnail_of(project)))
-    painter = QPainter(made)
+    kept, smooth = QPixmap(str(settings.thumbnail_of(project))), Qt.TransformationMode.SmoothTransformation
     if kept.isNull():
-        kept = icons.pixmap("video", "text3", 32)
+        kept = icons.icon("video", "text3").pixmap(QSize(32, 32), ratio)
     else:
-        kept = kept.scaled(CARD, Qt.AspectRatioMode.KeepAspectRatio, Qt.TransformationMode.SmoothTransformation)
-    painter.drawPixmap((CARD.width() - kept.width()) // 2, (CARD.height() - kept.height()) // 2, kept)
+        kept = kept.scaled(CARD * ratio, Qt.AspectRatioMode.KeepAspectRatio, smooth)
+        kept.setDevicePixelRatio(ratio)
+    size = kept.deviceIndependentSize()
+    painter = QPainter(made)
+    painter.drawPixmap(QPointF((CARD.width() - size.width()) / 2, (CARD.height() - size.height()) / 2), kept)
     painter.end()
     return made
 
