@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkImageData, vtkPolyData
+from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkTexture
 
 from app.window.viewport.scene import CLAY, Scene
 
@@ -17,12 +17,16 @@ SHADE = (0.055, 0.065, 0.08)
 
 
 class Shown(Protocol):
-    """Vertices and normals (v, 3) float32, faces (m, 3) int32, colours (v, 3) uint8 or None."""
+    """Vertices and normals (v, 3) float32, faces (m, 3) int32, colours (v, 3) uint8 or None; places (v, 2) float32 in a
+    picture (h, w, 3) uint8, rows from the top, or None for both.
+    """
 
     vertices: NDArray[np.float32]
     normals: NDArray[np.float32]
     faces: NDArray[np.int32]
     colours: NDArray[np.uint8] | None
+    coordinates: NDArray[np.float32] | None
+    picture: NDArray[np.uint8] | None
 
 
 class StreamedMesh:
@@ -39,7 +43,7 @@ class StreamedMesh:
         self._actor = vtkActor()
         self._actor.SetMapper(self._mapper)
         look = self._actor.GetProperty()
-        look.SetColor(*(value / 255 for value in CLAY))
+        self._picture: NDArray[np.uint8] | None = None
         look.SetInterpolationToPhong()
         look.SetAmbient(0.20)
         look.SetDiffuse(0.85)
@@ -55,10 +59,19 @@ class StreamedMesh:
         data.GetPointData().SetNormals(numpy_to_vtk(frame.normals))
         data.GetPointData().SetScalars(None if frame.colours is None else numpy_to_vtk(frame.colours))
         self._mapper.SetScalarVisibility(frame.colours is not None)
+        self._wear(frame.coordinates, frame.picture)
         data.Modified()
         if not self._there:
             self._there = True
             self._scene.put(self._name, self._actor)
+
+    def _wear(self, coordinates: NDArray[np.float32] | None, picture: NDArray[np.uint8] | None) -> None:
+        self._data.GetPointData().SetTCoords(None if coordinates is None else numpy_to_vtk(coordinates))
+        if picture is not self._picture:
+            self._picture = picture
+            self._actor.SetTexture(None if picture is None else _texture(picture))
+        paint = CLAY if picture is None else (255, 255, 255)
+        self._actor.GetProperty().SetColor(*(value / 255 for value in paint))
 
     def hide(self) -> None:
         """Take it out of the scene."""
@@ -66,6 +79,7 @@ class StreamedMesh:
             self._there = False
             self._scene.take_out(self._name)
             self._data.Initialize()
+            self._wear(None, None)
 
 
 class StreamedShadow:
@@ -98,6 +112,19 @@ class StreamedShadow:
             self._there = False
             self._scene.take_out(self._name)
             self._data.Initialize()
+
+
+def _texture(picture: NDArray[np.uint8]) -> vtkTexture:
+    """A texture of a picture whose rows come from the top."""
+    height, width = picture.shape[:2]
+    image = vtkImageData()
+    image.SetDimensions(width, height, 1)
+    image.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(picture[::-1]).reshape(-1, 3)))
+    texture = vtkTexture()
+    texture.SetInputData(image)
+    texture.InterpolateOn()
+    texture.RepeatOn()
+    return texture
 
 
 def _fill(data: vtkPolyData, vertices: NDArray[np.float32], faces: NDArray[np.int32]) -> None:
