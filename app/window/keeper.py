@@ -82,6 +82,11 @@ class Keeper(QObject):
         for kind, label, stages in performing.wanted(self.project, all_=all_ or self._going_on("sequences")):
             self._want(kind, label, self._missing(stages))
 
+    def run_performance(self) -> None:
+        """Start what the performance needs, motions of characters included, and nothing else."""
+        self._by_hand.add("sequences")
+        self._keep_performance(all_=True)
+
     def _going_on(self, kind: str) -> bool:
         """Whether work that was asked for by hand is under way."""
         return kind in self._by_hand and self._alive(kind)
@@ -104,8 +109,7 @@ class Keeper(QObject):
         self._want("tracks", FOLLOWING, tracks)
         self._want("scene", SCENE, scene)
         self._want("motion", MOVING, motion)
-        self._by_hand.add("sequences")
-        self._keep_performance(all_=True)
+        self.run_performance()
         return bool(tracks or scene or motion or self._alive("sequences") or self._alive("performance"))
 
     def _moved_before(self) -> bool:

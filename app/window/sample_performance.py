@@ -34,7 +34,7 @@ def open_sample_performance(shell: Shell) -> None:
         project.job_ended.disconnect(ended)
         if job.state == "done":
             _join(project, target)
-            opened.keeper.run_missing()
+            opened.keeper.run_performance()
         folder.cleanup()
 
     project.job_ended.connect(ended)

@@ -167,8 +167,11 @@ def paint_costs(painter: QPainter, shown: Composed, axis: Axis, top: int, height
         tall = 4 + (height - 18) * min(joint.cost / dear, 1.0) if dear > 0 else 4
         bar = QRectF(x - 4.5, base - tall, 9, tall)
         painter.setPen(QPen(look.colour("text"), 1.6) if joint.number == chosen else Qt.PenStyle.NoPen)
-        painter.setBrush(look.colour(tone(joint)))
+        painter.setBrush(look.colour(tone(joint), 110 if joint.poor else 255))
         painter.drawRoundedRect(bar, 2, 2)
+        if joint.poor:
+            painter.setBrush(QBrush(look.colour(tone(joint)), Qt.BrushStyle.BDiagPattern))
+            painter.drawRoundedRect(bar, 2, 2)
         _paint_words(painter, joint, x + 9, edge - 8, top, height)
     painter.restore()
 
@@ -196,9 +199,7 @@ def steps(joint: Joint) -> str:
 
 
 def tone(joint: Joint) -> str:
-    """The colour of a cut: red where it was kept although it is too dear, amber where its step is seen."""
-    if joint.poor:
-        return "err"
+    """The colour of a cut: amber where its step is seen; those that are over the limit are hatched besides."""
     if joint.score is None:
         return "accent"
     return "warn" if joint.score > STANDS_OUT else "ok"

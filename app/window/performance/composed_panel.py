@@ -17,7 +17,7 @@ from app.window.timeline.axis import LABELS
 from app.window.timeline.lanes import RULER
 from app.window.timeline.transport import Transport
 
-LEGEND = (("not seen", "ok", "bar"), ("step is seen", "warn", "bar"), ("over the limit", "err", "bar"))
+LEGEND = (("not seen", "ok", "bar"), ("step is seen", "warn", "bar"), ("over the limit", "ok", "hatch"))
 EMPTY = "Double-click motions in the graph, in the order in which they shall be played. Or drag them here."
 GAP_SHARE = 0.5
 

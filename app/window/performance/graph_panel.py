@@ -157,11 +157,15 @@ class GraphPanel(Panel):
 
     def _say_nothing(self) -> None:
         project = self.state.project
+        running = [text for _, text in project.progress.values()] if project is not None else []
         if project is None or not self.state.document.sequences:
-            self.nothing.tell(NOTHING, HOW, empty=True, run=False)
+            coming = [text for text in running if text.startswith(("Making", "Reading"))]
+            if coming:
+                self.nothing.tell("A sequence is on its way.", coming[0], empty=False, run=False)
+            else:
+                self.nothing.tell(NOTHING, HOW, empty=True, run=False)
             return
         stages = project.session.stages
-        running = [text for _, text in project.progress.values()]
         blocked, failed = stages.graph.why_blocked(), self._why_failed()
         if blocked or failed:
             self.nothing.tell("There is no motion graph.", blocked or failed, empty=False, run=not blocked)

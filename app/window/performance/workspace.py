@@ -92,7 +92,7 @@ class PerformanceWorkspace(Workspace):
         self.graph.carried.connect(self._carry)
         self.graph.dropped.connect(self._drop)
         self.composed.wanted.connect(self.wanted)
-        self.composed.source_wanted.connect(self.strip.setVisible)
+        self.composed.source_wanted.connect(lambda _: self._show_parts())
         self.state.hint.connect(self.hint)
         self.thumbnails.ready.connect(self._drawn)
 
@@ -113,6 +113,7 @@ class PerformanceWorkspace(Workspace):
         self.project = project
         self.state.attach(project)
         self.library.attach()
+        self._show_parts()
 
     def detach(self) -> None:
         """Let go of the project."""
@@ -145,6 +146,8 @@ class PerformanceWorkspace(Workspace):
 
     def document_changed(self, before: Document, after: Document) -> None:
         """Pictures of sequences whose files or front changed are drawn anew."""
+        if bool(before.sequences) != bool(after.sequences):
+            self._show_parts()
         former = {sequence.id: sequence for sequence in before.sequences}
         for sequence in after.sequences:
             old = former.get(sequence.id)
@@ -154,7 +157,14 @@ class PerformanceWorkspace(Workspace):
     def refresh(self) -> None:
         """Show the project as it is."""
         self.graph.refresh()
+        self._show_parts()
         self.hint.emit(self._hint())
+
+    def _show_parts(self) -> None:
+        """Where there is no sequence nothing can be composed, and the invitation has the room."""
+        there = bool(self.state.document.sequences)
+        self.composed.setVisible(there)
+        self.strip.setVisible(there and self.composed.source.isChecked())
 
     def counts(self, document: Document) -> str:
         """How much there is."""
