@@ -97,28 +97,22 @@ def compare_film(
     The comparisons must have been computed.
     """
     moving = Moving.of(session, character_id)
-    columns: list[tuple[str, Array]] = [("Motionwright", moving.vertices)]
-    for variant in variants:
-        made: Any = session.ready(session.stages.comparison(character_id, variant))
-        if made is None:
-            raise InputError(f"The comparison {variant} has not been computed yet.")
-        columns.append((COMPARISONS[variant], made))
+    columns = _columns(session, character_id, moving, variants)
     count, report = len(moving.vertices), progress or silent
 
     def pictures() -> Iterator[Picture]:
-        sources: list[Iterable[Picture]] = []
-        labels = []
-        for name, vertices in columns:
-            sources.append(_over_video(session, [moving.with_vertices(vertices)], 0.25, False))
-            labels.append(name)
-        for _, vertices in columns:
-            sources.append(_from_side(session, moving, vertices))
-            labels.append("from the side")
-        for frame, shown in enumerate(_together(sources, labels, len(columns))):
+        for frame, shown in enumerate(_compared(session, moving, columns, range(count))):
             yield shown
             report((frame + 1) / count)
 
     write_video(target, pictures(), rate(session), count=count)
+
+
+def comparison_frame(session: Session, character_id: str, frame: int, variants: Sequence[str]) -> Picture:
+    """Give one frame of a comparison as ``compare_film`` would write it."""
+    moving = Moving.of(session, character_id)
+    columns = _columns(session, character_id, moving, variants)
+    return next(_compared(session, moving, columns, range(frame, frame + 1)))
 
 
 def film_frame(
@@ -190,6 +184,27 @@ def _from_side(session: Session, moving: Moving, vertices: Array, frames: range 
         up=world.normal,
         shown=shown,
     )
+
+
+def _columns(session: Session, character_id: str, moving: Moving, variants: Sequence[str]) -> list[tuple[str, Array]]:
+    """Our result and the comparisons, each with its name."""
+    columns: list[tuple[str, Array]] = [("Motionwright", moving.vertices)]
+    for variant in variants:
+        made: Any = session.ready(session.stages.comparison(character_id, variant))
+        if made is None:
+            raise InputError(f"The comparison {variant} has not been computed yet.")
+        columns.append((COMPARISONS[variant], made))
+    return columns
+
+
+def _compared(
+    session: Session, moving: Moving, columns: Sequence[tuple[str, Array]], frames: range
+) -> Iterator[Picture]:
+    """Columns beside each other, each over the video and below it from the side."""
+    over = [_over_video(session, [moving.with_vertices(each)], 0.25, False, frames) for _, each in columns]
+    side = [_from_side(session, moving, each, frames) for _, each in columns]
+    labels = [*(name for name, _ in columns), *("from the side" for _ in columns)]
+    return _together([*over, *side], labels, len(columns))
 
 
 def _tracks(session: Session) -> list[Any]:

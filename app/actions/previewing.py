@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import attrs
 
 from app.actions.compositing import Composition, Standing
-from app.actions.films import film_frame
+from app.actions.films import comparison_frame, film_frame
 from app.actions.moving import animated
 from app.actions.rendering import FilmOrder
 from app.actions.session import Session
@@ -64,6 +65,11 @@ class Previewer:
             return chequered(scene.sheet(frame).rgba())
         return film_frame(session, scene, frame, view=order.view, dim=order.dim, points=order.points)
 
+    def comparison(self, session: Session, character_id: str, variants: Sequence[str], frame: int) -> Picture:
+        """One frame of a comparison, with those of the variants that are computed."""
+        there = [each for each in variants if session.stages.comparison(character_id, each) in session.cache]
+        return comparison_frame(session, character_id, frame, there)
+
     def _composition(self, session: Session, order: FilmOrder) -> Composition:
         keys = tuple(stage.key for stage in order.stages(session))
         key = (keys, session.stages.world.key, order.standing, order.characters)
@@ -84,10 +90,20 @@ class Previewer:
 
 
 def lacking(session: Session, order: FilmOrder) -> str:
-    """What a preview of an order has to wait for: motion, background, or nothing."""
-    if any(session.stages.animation(each) not in session.cache for each in order.characters):
-        return "motion"
+    """What a film has to wait for: motion, motion of some of the characters, background, or nothing."""
+    missing = [each for each in order.characters if session.stages.animation(each) not in session.cache]
+    if missing or not order.characters:
+        return "some motion" if len(missing) < len(order.characters) else "motion"
     return "background" if any(each not in session.cache for each in order.stages(session)) else ""
+
+
+def within_reach(session: Session, order: FilmOrder) -> FilmOrder | None:
+    """As much of an order as can be shown from the results that are there; None where nothing can."""
+    there = tuple(each for each in order.characters if session.stages.animation(each) in session.cache)
+    if not there:
+        return None
+    order = attrs.evolve(order, characters=there)
+    return without_background(order) if lacking(session, order) == "background" else order
 
 
 def without_background(order: FilmOrder) -> FilmOrder:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from collections.abc import Callable, Hashable
 from typing import Any
@@ -68,7 +69,8 @@ class NewestCall(QObject):
             except Exception as problem:  # noqa: BLE001 - handed to whoever asked
                 error = problem
             if not self._closed:
-                self._arrived.emit(wish, value, error)
+                with contextlib.suppress(RuntimeError):  # closed and deleted in this very moment
+                    self._arrived.emit(wish, value, error)
             del call, value, error
 
     def _deliver(self, wish: Hashable, value: Any, error: BaseException | None) -> None:
@@ -79,10 +81,10 @@ class NewestCall(QObject):
         else:
             self.refused.emit(wish, error)
 
-    def close(self) -> None:
-        """Drop what waits and wait for what is being made."""
+    def close(self, *, wait: bool = True) -> None:
+        """Drop what waits, and wait for what is being made, or let it end by itself, unheard."""
         with self._wake:
             self._closed, self._next = True, None
             self._wake.notify()
-        if self._thread is not None:
+        if self._thread is not None and wait:
             self._thread.join()

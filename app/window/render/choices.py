@@ -28,7 +28,7 @@ class FilmChoices:
     view: View = "video"
     occlusion: bool = True
     shadow: bool = True
-    plate: bool = False
+    plate: bool = True
     match_light: bool = True
     light_turn: float = 0.0
     light_lift: float = 0.0

@@ -12,6 +12,7 @@ from app.window import icons, settings
 from app.window.project import Project
 from app.window.render.film_page import FilmPage
 from app.window.render.motion_page import ComparePage, MotionPage
+from app.window.render.page import Page
 
 if TYPE_CHECKING:
     from app.window.shell import Shell
@@ -43,7 +44,8 @@ class RenderDialog(QDialog):
         self.tabs: dict[str, QToolButton] = {}
         column.addLayout(self._tabs())
         column.addWidget(self.stack, 1)
-        self.film.asked.connect(self._asked)
+        for page in (self.film, self.compare, self.motion):
+            page.asked.connect(self._asked)
         self._later = QTimer(self)
         self._later.setSingleShot(True)
         self._later.setInterval(SOON)
@@ -55,8 +57,9 @@ class RenderDialog(QDialog):
             project.work_changed,
         ):
             signal.connect(self._soon)
-        project.closing.connect(self.close)
-        self.show_page("film")
+        self._wait = False
+        project.closing.connect(self._project_closes)
+        self.film.target.write.setFocus()
 
     def _tabs(self) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -85,13 +88,18 @@ class RenderDialog(QDialog):
         self.stack.setCurrentIndex([page for page, *_ in PAGES].index(name))
         self.refresh()
 
+    def _project_closes(self) -> None:
+        """Nothing may read the project's files any more."""
+        self._wait = True
+        self.close()
+
     def _soon(self, *_: object) -> None:
         self._later.start()
 
     def refresh(self) -> None:
         """Show the project as it is on the page in sight."""
         page = self.stack.currentWidget()
-        assert isinstance(page, FilmPage | ComparePage | MotionPage)
+        assert isinstance(page, Page)
         page.refresh()
 
     def _asked(self, command: str) -> None:
@@ -120,7 +128,8 @@ class RenderDialog(QDialog):
             self.project.work_changed,
         ):
             signal.disconnect(self._soon)
-        self.film.close_calls()
+        for page in (self.film, self.compare, self.motion):
+            page.close_calls(wait=self._wait)
         event.accept()
 
 

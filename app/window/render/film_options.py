@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import attrs
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox, QVBoxLayout, QWidget
 
+from app.model.character import Character
 from app.window.controls import NumberField, NumberRange, Row, ScrollColumn, label, separator
 from app.window.render.choices import remember, remembered
+from app.window.render.page import WIDE, narrow
 
-WIDE = 108
 FORMS = (("Film (mp4)", False), ("Pictures with alpha (PNG)", True))
 VIEWS = (("Over the video", "video"), ("From the side", "side"), ("Both, side by side", "both"))
 SWITCHES: dict[str, tuple[str, str]] = {
@@ -45,6 +48,7 @@ class FilmOptions(ScrollColumn):
     def __init__(self, frames: tuple[int, int], count: int) -> None:
         super().__init__()
         self.choices = remembered()
+        self.characters: dict[str, QCheckBox] = {}
         self.form = QComboBox()
         self.view = QComboBox()
         for text, value in FORMS:
@@ -52,11 +56,16 @@ class FilmOptions(ScrollColumn):
         for text, kind in VIEWS:
             self.view.addItem(text, kind)
         for box, name, words in ((self.form, "alpha", "What is written"), (self.view, "view", "Which view")):
-            box.setAccessibleName(words)
+            narrow(box, words)
             box.setCurrentIndex(max(box.findData(getattr(self.choices, name)), 0))
             box.currentIndexChanged.connect(lambda _, box=box, name=name: self._set(name, box.currentData()))
         self.rows.addWidget(Row("Write", self.form, width=WIDE))
         self.rows.addWidget(Row("View", self.view, width=WIDE))
+        self.cast = QVBoxLayout()
+        self.cast.setSpacing(6)
+        self.rows.addWidget(separator())
+        self.rows.addWidget(label("Characters", "title"))
+        self.rows.addLayout(self.cast)
         self.switches: dict[str, QCheckBox] = {}
         self.numbers: dict[str, NumberField] = {}
         self.lines: dict[str, QWidget] = {}
@@ -74,6 +83,29 @@ class FilmOptions(ScrollColumn):
         self.rows.addWidget(self.range_row)
         self.rows.addStretch(1)
         self._show_possible()
+
+    def show_characters(self, known: Sequence[Character]) -> None:
+        """Show who can be filmed; who was ticked or not stays so, newcomers are filmed where they are visible."""
+        names = {each.id: each.name for each in known}
+        if {id_: box.text() for id_, box in self.characters.items()} == names:
+            return
+        before = {id_: box.isChecked() for id_, box in self.characters.items()}
+        for box in self.characters.values():
+            self.cast.removeWidget(box)
+            box.hide()
+            box.deleteLater()
+        self.characters = {}
+        for each in known:
+            box = QCheckBox(each.name)
+            box.setChecked(before.get(each.id, each.visible))
+            box.toggled.connect(lambda _: self._tell())
+            self.characters[each.id] = box
+            self.cast.addWidget(box)
+
+    @property
+    def filmed(self) -> tuple[str, ...]:
+        """Ids of the characters that are ticked."""
+        return tuple(id_ for id_, box in self.characters.items() if box.isChecked())
 
     def _group(self, title: str, names: tuple[str, ...]) -> None:
         self.rows.addWidget(separator())

@@ -1,23 +1,23 @@
-"""The pages of a comparison and of a motion: what, of which character, and where it goes."""
+"""The pages of a comparison and of a motion: of which character, what, and where it goes."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
-from PySide6.QtWidgets import QCheckBox, QComboBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QComboBox
 
 from app.actions import rendering
 from app.actions.films import COMPARISONS
+from app.actions.rendering import FilmOrder
+from app.model.character import Character
 from app.window import files
-from app.window.controls import Panel, Row, label
+from app.window.controls import Row, ScrollColumn, label
 from app.window.project import Project
 from app.window.render.choices import remember_text, remembered_text
-from app.window.render.film_page import VIDEO
-from app.window.render.target import TargetLine
+from app.window.render.page import VIDEO, WIDE, Page, narrow
 from imitation.progress import Progress
 
-WIDE = 108
+NEED_POSE = ("naive_tracks", "key_poses")
 FORMS: tuple[tuple[str, str, str], ...] = (
     ("Animated GLB", "glb", ".glb"),
     ("Universal Scene Description", "usd", ".usd"),
@@ -27,45 +27,38 @@ FORMS: tuple[tuple[str, str, str], ...] = (
 )
 
 
-class OfOneCharacter(QWidget):
-    """A page about one character, and a line for its file."""
+class OfOneCharacter(Page):
+    """A page about one character."""
 
     def __init__(self, project: Project, name: str, verb: str, words: str) -> None:
-        super().__init__()
-        self.project = project
-        column = QVBoxLayout(self)
-        column.setContentsMargins(12, 12, 12, 12)
-        column.setSpacing(12)
-        panel = Panel()
-        self.rows = QVBoxLayout()
-        self.rows.setContentsMargins(16, 16, 16, 16)
-        self.rows.setSpacing(10)
-        panel.column.addLayout(self.rows)
+        self.options = ScrollColumn()
+        super().__init__(project, self.options, name, verb)
         said = label(words, "label")
         said.setWordWrap(True)
-        self.rows.addWidget(said)
-        self.character = QComboBox()
-        self.character.setAccessibleName("Character")
-        self.rows.addWidget(Row("Character", self.character, width=WIDE))
-        column.addWidget(panel, 1)
-        self.target = TargetLine(project, name, verb)
-        column.addWidget(self.target)
-        self._shown: tuple[Any, ...] = ()
+        self.options.rows.addWidget(said)
+        self.chooser = narrow(QComboBox(), "Character")
+        self.chooser.currentIndexChanged.connect(lambda _: self._shown and self.refresh())
+        self.options.rows.addWidget(Row("Character", self.chooser, width=WIDE))
+        self._shown: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def character(self) -> Character | None:
+        """Who is chosen."""
+        chosen = self.chooser.currentData()
+        return next((each for each in self.project.document.characters if each.id == chosen), None)
 
     def refresh(self) -> None:
         """Show the characters as they are."""
         known = tuple((each.id, each.name) for each in self.project.document.characters)
         if known != self._shown:
-            chosen = self.character.currentData() or self.project.character_id
-            self._shown = known
-            self.character.clear()
+            chosen = self.chooser.currentData() or self.project.character_id
+            self._shown = ()
+            self.chooser.clear()
             for id_, name in known:
-                self.character.addItem(name, id_)
-            self.character.setCurrentIndex(max(self.character.findData(chosen), 0))
-        self.target.write.setEnabled(bool(known))
-
-    def close_calls(self) -> None:
-        """Nothing goes on by itself here."""
+                self.chooser.addItem(name, id_)
+            self.chooser.setCurrentIndex(max(self.chooser.findData(chosen), 0))
+            self._shown = known
+        self.target.write.setEnabled(self.character is not None)
 
 
 class ComparePage(OfOneCharacter):
@@ -77,41 +70,46 @@ class ComparePage(OfOneCharacter):
             "comparison",
             "Render",
             "The result beside what simpler methods give from the same project: over the video, and below it from the "
-            "side. What is missing is computed first.",
+            "side.",
         )
         stored = remembered_text("variants", ",".join(COMPARISONS)).split(",")
         self.variants: dict[str, QCheckBox] = {}
         for name, text in COMPARISONS.items():
             box = QCheckBox(text[:1].upper() + text[1:])
             box.setChecked(name in stored)
-            box.toggled.connect(lambda _: self._chosen())
+            box.toggled.connect(lambda _: self._ticked())
             self.variants[name] = box
-            self.rows.addWidget(box)
-        self.rows.addStretch(1)
+            self.options.rows.addWidget(box)
+        self.options.rows.addStretch(1)
         self.target.wanted.connect(self._render)
         self.target.suggest(f"{project.document.name} compared", ".mp4", VIDEO, folder=False)
-        self.refresh()
 
     @property
     def chosen(self) -> tuple[str, ...]:
-        """Names of the comparisons that are ticked."""
-        return tuple(name for name, box in self.variants.items() if box.isChecked())
+        """Names of the comparisons that are ticked and can be had."""
+        return tuple(name for name, box in self.variants.items() if box.isChecked() and box.isEnabled())
 
-    def _chosen(self) -> None:
-        remember_text("variants", ",".join(self.chosen))
+    def _ticked(self) -> None:
+        remember_text("variants", ",".join(name for name, box in self.variants.items() if box.isChecked()))
         self.refresh()
 
     def refresh(self) -> None:
-        """A comparison needs something to compare with."""
+        """A comparison needs something to compare with; two of them need an edited pose."""
         super().refresh()
-        self.target.write.setEnabled(bool(self._shown) and bool(self.chosen))
+        character = self.character
+        posed = character is not None and bool(character.edits)
+        for name in NEED_POSE:
+            self.variants[name].setEnabled(posed)
+            self.variants[name].setToolTip("" if posed else "Needs a pose that was edited by hand")
+        self.target.write.setEnabled(character is not None and bool(self.chosen))
+        self.preview.show_comparison(character.id if character is not None else "", self.chosen)
 
     def _render(self) -> None:
-        still, variants = self.project.session.as_it_is(), self.chosen
-        character = str(self.character.currentData())
+        still, variants, character = self.project.session.as_it_is(), self.chosen, self.character
+        assert character is not None
 
         def write(target: Path, progress: Progress) -> Path:
-            return rendering.write_comparison(still, character, variants, target, progress)
+            return rendering.write_comparison(still, character.id, variants, target, progress)
 
         self.target.run("Comparing in", write)
 
@@ -119,36 +117,40 @@ class ComparePage(OfOneCharacter):
 class MotionPage(OfOneCharacter):
     """A character's motion for other programs."""
 
+    icon = "export"
+    plain = "The character in this frame."
+
     def __init__(self, project: Project) -> None:
-        super().__init__(
-            project,
-            "motion",
-            "Export",
-            "The moving mesh for other programs, at the clip's frame rate, in metres.",
-        )
-        self.form = QComboBox()
-        self.form.setAccessibleName("Form of the file")
+        words = "The moving mesh for other programs, frame by frame at the clip's frame rate."
+        super().__init__(project, "motion", "Export", words)
+        self.form = narrow(QComboBox(), "Form of the file")
         for text, form, suffix in FORMS:
             self.form.addItem(text, (form, suffix))
         stored = remembered_text("form", FORMS[0][1])
         self.form.setCurrentIndex(next((n for n, each in enumerate(FORMS) if each[1] == stored), 0))
         self.form.currentIndexChanged.connect(lambda _: self._formed())
-        self.rows.addWidget(Row("Form", self.form, width=WIDE))
-        self.rows.addStretch(1)
+        self.options.rows.addWidget(Row("Form", self.form, width=WIDE))
+        self.options.rows.addStretch(1)
         self.target.wanted.connect(self._export)
         self._formed()
-        self.refresh()
 
     def _formed(self) -> None:
         form, suffix = self.form.currentData()
         remember_text("form", form)
-        self.target.suggest(self.project.document.name, suffix, files.EXPORT_FILTER, folder=not suffix)
+        self.target.suggest(f"{self.project.document.name} motion", suffix, files.EXPORT_FILTER, folder=not suffix)
+
+    def refresh(self) -> None:
+        """Show the character alone."""
+        super().refresh()
+        character = self.character
+        self.preview.show_order(FilmOrder((character.id,) if character is not None else (), alpha=True))
 
     def _export(self) -> None:
-        still, character = self.project.session.as_it_is(), str(self.character.currentData())
+        still, character = self.project.session.as_it_is(), self.character
         form, _ = self.form.currentData()
+        assert character is not None
 
         def write(target: Path, progress: Progress) -> Path:
-            return rendering.write_motion(still, character, target, form, progress)
+            return rendering.write_motion(still, character.id, target, form, progress)
 
         self.target.run("Exporting", write)

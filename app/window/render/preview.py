@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from PySide6.QtCore import QRectF, Signal
@@ -11,12 +12,19 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 from app.actions.rendering import FilmOrder
 from app.window import theme
 from app.window.canvas import as_image, fitted, marks
-from app.window.controls import Elided, NumberField, NumberRange, button
+from app.window.controls import Elided, NumberField, NumberRange, button, label
 from app.window.newest_call import NewestCall
 from app.window.project import Project
 
 LACKING = {
     "motion": ("The motion has not been solved yet: rendering solves it first.", "Solve the motion", "propagate"),
+    "some motion": (
+        "Characters whose motion has not been solved yet are left out here: rendering solves it first.",
+        "Solve the motion",
+        "propagate",
+    ),
+    "comparison": ("What is not computed yet is left out here: rendering computes it first.", "", ""),
+    "nobody": ("Choose a character to film.", "", ""),
     "background": (
         "Shown without occlusion, shadow, plate and matched light: the background has not been measured yet.",
         "Measure the background",
@@ -63,14 +71,16 @@ class Picture(QWidget):
 
 
 class Preview(QWidget):
-    """Shows the frame in sight under an order; ``asked`` names the command that gets what is missing."""
+    """Shows the frame in sight under an order; ``asked`` names the command that gets what is missing.
+
+    ``plain`` is said where nothing is missing.
+    """
 
     asked = Signal(str)
 
-    def __init__(self, project: Project) -> None:
+    def __init__(self, project: Project, plain: str) -> None:
         super().__init__()
-        self.project = project
-        self.order: FilmOrder | None = None
+        self.project, self.plain = project, plain
         self.shown: tuple[Any, ...] | None = None
         self._previewer: Any = None
         self._calls = NewestCall("preview", self)
@@ -90,7 +100,7 @@ class Preview(QWidget):
         self.frame.changed.connect(lambda value: project.show_frame(round(value)))
         self.words = Elided("", "label")
         self.help = button("", self._ask, name="run")
-        row.addWidget(Elided("Frame", "label"), 0)
+        row.addWidget(label("Frame", "label"))
         row.addWidget(self.frame)
         row.addWidget(self.words, 1)
         row.addWidget(self.help)
@@ -103,41 +113,61 @@ class Preview(QWidget):
 
     def show_order(self, order: FilmOrder) -> None:
         """Show another film, or the same where a frame or a result is another one now."""
-        from app.actions.previewing import lacking, without_background
+        from app.actions.previewing import lacking, within_reach
 
-        self.order = order
         project = self.project
-        self.frame.set_value(project.frame)
-        lack = lacking(project.session, order) if order.characters else "motion"
-        self._lack(lack)
-        if lack == "motion":
-            self._calls.forget()
-            self.picture.show_picture(QImage())
-            self.picture.say("Nothing to show yet")
+        self._lack(lacking(project.session, order) if order.characters else "nobody")
+        made = within_reach(project.session, order)
+        if made is None:
+            self.show_nothing()
             return
-        made = without_background(order) if lack == "background" else order
-        stages = project.session.stages
+        stages, still, frame = project.session.stages, project.session.as_it_is(), project.frame
         keys = tuple(stage.key for stage in made.stages(project.session))
-        wish = (made, project.frame, keys, stages.world.key, stages.masks.key)
+        wish = (made, frame, keys, stages.world.key, stages.masks.key)
+        self.show(wish, lambda previewer: previewer.picture(still, made, frame))
+
+    def show_comparison(self, character: str, variants: tuple[str, ...]) -> None:
+        """Show a comparison as far as it is computed."""
+        project = self.project
+        stages, still, frame = project.session.stages, project.session.as_it_is(), project.frame
+        if not character or stages.animation(character) not in still.cache:
+            self._lack("motion" if character else "nobody")
+            self.show_nothing()
+            return
+        there = tuple(each for each in variants if stages.comparison(character, each) in still.cache)
+        self._lack("" if there == variants else "comparison")
+        wish = (character, there, frame, stages.animation(character).key, stages.world.key)
+        self.show(wish, lambda previewer: previewer.comparison(still, character, there, frame))
+
+    def show(self, wish: tuple[Any, ...], make: Callable[[Any], Any]) -> None:
+        """Make a picture unless it is the one that is shown."""
+        self.frame.set_value(self.project.frame)
         if wish == self.shown:
             self._calls.forget()
             self.picture.say("")
             return
-        self.picture.say("…")
-        still, frame = project.session.as_it_is(), project.frame
-        self._calls.want(wish, lambda: self._make(still, made, frame))
+        self.picture.say("being made …")
+        self._calls.want(wish, lambda: self._make(make))
 
-    def _make(self, session: Any, order: FilmOrder, frame: int) -> QImage:
+    def show_nothing(self) -> None:
+        """There is nothing to show yet."""
+        self.shown = None
+        self._calls.forget()
+        self.frame.set_value(self.project.frame)
+        self.picture.show_picture(QImage())
+        self.picture.say("Nothing to show yet")
+
+    def _make(self, make: Callable[[Any], Any]) -> QImage:
         from app.actions.previewing import Previewer
 
         if self._previewer is None:
             self._previewer = Previewer()
-        return as_image(self._previewer.picture(session, order, frame))
+        return as_image(make(self._previewer))
 
     def _answered(self, wish: tuple[Any, ...], picture: QImage) -> None:
         self.shown = wish
         self.picture.show_picture(picture)
-        self.picture.say("…" if self._calls.busy else "")
+        self.picture.say("being made …" if self._calls.busy else "")
 
     def _refused(self, wish: tuple[Any, ...], error: BaseException) -> None:
         self.shown = None
@@ -146,11 +176,11 @@ class Preview(QWidget):
         self.words.setText(str(error))
 
     def _lack(self, what: str) -> None:
-        sentence, text, self._command = LACKING.get(what, ("As it will be written.", "", ""))
+        sentence, text, self._command = LACKING.get(what, (self.plain, "", ""))
         self.words.setText(sentence)
         self.help.setText(text)
         self.help.setVisible(bool(text))
 
-    def close_calls(self) -> None:
-        """End the thread."""
-        self._calls.close()
+    def close_calls(self, *, wait: bool) -> None:
+        """End the thread; ``wait`` until it has ended."""
+        self._calls.close(wait=wait)

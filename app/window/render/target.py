@@ -24,9 +24,9 @@ class TargetLine(QWidget):
 
     wanted = Signal()
 
-    def __init__(self, project: Project, name: str, verb: str) -> None:
+    def __init__(self, project: Project, name: str, verb: str, icon: str) -> None:
         super().__init__()
-        self.project, self.name, self.verb = project, name, verb
+        self.project, self.name = project, name
         self.filter, self.suffix, self.into_folder = "", "", False
         self.job: Job | None = None
         column = QVBoxLayout(self)
@@ -44,9 +44,10 @@ class TargetLine(QWidget):
         self.progress.setTextVisible(False)
         self.share = label("", "label")
         self.share.setFixedWidth(40)
-        self.write = button(verb, self.wanted.emit, primary=True, name="render")
+        self.write = button(verb, self.wanted.emit, primary=True, name=icon)
         self.cancel = button("Cancel", self._cancel, name="cancel")
-        row.addWidget(label("To", "label"))
+        self.caption = label("To", "label")
+        row.addWidget(self.caption)
         for widget, stretch in ((self.path, 1), (self.browse, 0), (self.progress, 1), (self.share, 0)):
             row.addWidget(widget, stretch)
         row.addWidget(self.write)
@@ -93,6 +94,7 @@ class TargetLine(QWidget):
         self.bar.hide()
         self.job = self.project.call(f"{what} {target.name}", lambda progress: write(target, progress))
         self._show_running(True)
+        self.cancel.setFocus()
 
     def _cancel(self) -> None:
         if self.job is not None:
@@ -108,7 +110,10 @@ class TargetLine(QWidget):
         if job is not self.job:
             return
         self.job = None
+        focused = self.cancel.hasFocus()
         self._show_running(False)
+        if focused:
+            self.write.setFocus()
         if job.state == "done":
             path = Path(job.value)
             place = QUrl.fromLocalFile(str(path if path.is_dir() else path.parent))
@@ -126,3 +131,4 @@ class TargetLine(QWidget):
             widget.setVisible(running)
         self.progress.setValue(0)
         self.share.setText("0 %")
+        self.caption.setText(self.job.label if running and self.job is not None else "To")

@@ -11,7 +11,7 @@ import pytest
 
 from app.actions.compositing import Standing
 from app.actions.films import COMPARISONS, render_film
-from app.actions.previewing import Previewer, chequered, lacking, without_background
+from app.actions.previewing import Previewer, chequered, lacking, within_reach, without_background
 from app.actions.rendering import FilmOrder, computed, write_comparison, write_film, write_motion
 from app.actions.session import Session
 from app.formats import open_video
@@ -150,6 +150,8 @@ def test_what_is_lacking_is_named_and_left_out(solved: Session, tmp_path: Path) 
     plain = without_background(order)
     assert lacking(solved, plain) == ""
     assert plain.standing.shutter == 0.5
-    assert lacking(solved, attrs.evolve(plain, characters=())) == ""
+    assert within_reach(solved, order) == plain
+    assert lacking(solved, attrs.evolve(plain, characters=())) == "motion"
+    assert within_reach(solved, attrs.evolve(plain, characters=())) is None
     with pytest.raises(InputError, match="no character"):
         render_film(solved, (), tmp_path / "film.mp4")
