@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tvmedit.cuts.assembly import deform, normal_equations, turn_normals
+from tvmedit.cuts.interpolation import partly
 from tvmedit.cuts.nodes import DeformationGraph, spread_nodes
-from tvmedit.cuts.rotations import rotation_matrices, rotation_vectors
+from tvmedit.cuts.rotations import rotation_matrices
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int32]
@@ -17,7 +18,7 @@ SPACING = 0.1015
 PERSON = 1.75
 SKIN = 2.2
 """Height in metres, and surface in square metres of a body that is large for it: what lies low is not small."""
-SAMPLES = 1000
+SAMPLES = 1500
 POINT_SHARE = 0.25
 FACING = 0.3
 """Cosine of the angle between the normals of two partners: about 72 degrees."""
@@ -56,10 +57,24 @@ class Registration:
     reason: str = ""
 
     def between(self, share: float) -> Array:
-        """Vertices (v, 3) of the shape in between: 0 the mesh as it was, 1 on the target."""
-        rotations = rotation_matrices(share * rotation_vectors(self.rotations))
+        """Vertices (v, 3) of the shape in between: 0 the mesh as it was, 1 on the target.
+
+        Its lowest part is as high as the share says between both ends, so that who stands on the ground stays on it.
+        """
+        shape = self._deformed(*partly(self.graph, self.rotations, self.moves, share))
+        ends = _lowest(self.vertices), _lowest(self._deformed(self.rotations, self.moves))
+        shape[:, 2] += (1.0 - share) * ends[0] + share * ends[1] - _lowest(shape)
+        return shape
+
+    def _deformed(self, rotations: Array, moves: Array) -> Array:
         graph = self.graph
-        return deform(self.vertices, graph.places, graph.bound, graph.weights, rotations, share * self.moves)
+        return deform(self.vertices, graph.places, graph.bound, graph.weights, rotations, moves)
+
+
+def _lowest(vertices: Array) -> float:
+    """Mean height of the lowest hundredth of the vertices."""
+    count = max(1, len(vertices) // 100)
+    return float(np.partition(vertices[:, 2], count - 1)[:count].mean())
 
 
 def vertex_normals(vertices: Array, faces: Faces) -> Array:
@@ -128,10 +143,13 @@ def body_scale(vertices: Array, faces: Faces, height: float) -> float:
 
 
 def _schedule(iterations: int, *, warm: bool) -> list[tuple[float, float]]:
-    """Stiffness 3 to 0.2 and distance gate 40 to 5 cm, geometrically; a warm start begins half of the way."""
+    """Stiffness 3 to 0.1 and distance gate 30 to 15 cm, geometrically; a warm start begins half of the way.
+
+    A tighter gate in the end loses limbs that are still on their way.
+    """
     first = 0.5 if warm else 0.0
     shares = np.linspace(first, 1.0, iterations)
-    return [(3.0 * (0.2 / 3.0) ** s, 0.4 * (0.05 / 0.4) ** s) for s in shares.tolist()]
+    return [(3.0 * (0.1 / 3.0) ** s, 0.3 * 0.5**s) for s in shares.tolist()]
 
 
 def _first_guess(graph: DeformationGraph, start: Registration | None) -> tuple[Array, Array]:
