@@ -13,7 +13,12 @@ from app.model.edits import scene
 from app.model.world import KnownLength, SeenLength
 
 _OPTIONS = (
-    click.option("--ground", type=click.Choice(["local", "plane", "depth"]), help="Where contacts lie."),
+    click.option(
+        "--ground",
+        type=click.Choice(["local", "background", "plane", "depth"]),
+        help="Where contacts lie: on the recovered points near each, on the measured background, on one plane, or at a "
+        "constant depth.",
+    ),
     click.option("--from-above", is_flag=True, help="The camera looks down on the subject."),
     click.option(
         "--depth-of", multiple=True, help="Track kept at constant depth, with --ground depth; may be given again."

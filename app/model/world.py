@@ -10,7 +10,7 @@ from app.model.frozen import FrozenMap
 from app.model.values import MediaRef, Point2, Point3, Unknown
 
 CameraSource = Literal["solve", "static", "file"]
-GroundKind = Literal["local", "plane", "depth"]
+GroundKind = Literal["local", "background", "plane", "depth"]
 
 
 @attrs.frozen
@@ -63,7 +63,8 @@ class WorldChoice:
 
     Attributes
     ----------
-    ground : "local" fits the recovered points near each contact (stairs), "plane" one plane to the selected
+    ground : "local" fits the recovered points near each contact (stairs), "background" puts each contact onto the
+        measured background (the paper's stairs), "plane" fits one plane to the selected
         points (the paper's rabbit), "depth" keeps tracks at a constant depth (its salamander).
     plane_points : the selected points for "plane", in the camera solution's own units; empty takes all points.
     depth_tracks : the tracks of constant depth for "depth"; depth their depth, None takes 5.

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from app.model.character import Character
 from app.model.document import Document
 from app.model.tracks import Track
-from app.stages import animation, depth, performance, scene, tracking
+from app.stages import animation, collision, depth, performance, scene, tracking
 from app.stages.stage import Stage
 
 
@@ -85,6 +85,12 @@ class Stages:
         """Limbs and frames that the video explains in two ways."""
         return self._once(
             f"ambiguous/{character_id}", lambda: animation.ambiguous(self.document, self._character(character_id))
+        )
+
+    def penetration(self, character_id: str) -> Stage:
+        """How far a character goes into the measured background."""
+        return self._once(
+            f"penetration/{character_id}", lambda: collision.penetration(self.document, self._character(character_id))
         )
 
     def comparison(self, character_id: str, variant: str) -> Stage:

@@ -42,11 +42,16 @@ def world(document: Document) -> Stage:
 def placed(document: Document) -> Stage:
     """The contacts of all tracks with their places, in the world: a weakly supported one is judged by the others."""
     marked = [track for track in document.tracks if track.contacts or _anchored(document, track)]
-    needs = (world(document), *(tracking.track(document, track) for track in marked))
+    needs: tuple[Stage, ...] = (world(document), *(tracking.track(document, track) for track in marked))
     inputs = (
         document.world,
         tuple((track.id, track.name, track.contacts, _anchored(document, track)) for track in marked),
     )
+    if document.world.ground == "background" and marked:
+        from app.stages.depth import depth
+
+        needs = (depth(document), tracking.masks(document), *needs)
+        return Stage("contacts", "Placing contacts", _on_background, (document.clip, *inputs), needs, weight=2.0)
     return Stage("contacts", "Placing contacts", _placed, inputs, needs, version=3, weight=0.2)
 
 
@@ -111,6 +116,25 @@ def _placed(context: Context, inputs: Any, world_: World, *tracks: Any) -> dict[
             found[track_id] = depth_anchors(track, world_)
         else:
             found[track_id] = [place_contact(contact, name, track, choice, world_) for contact in contacts_]
+    return agreed(found, {entry[0]: track for entry, track in zip(marked, tracks, strict=True)}, world_)
+
+
+def _on_background(
+    context: Context, inputs: Any, maps: Any, masks: Masks | None, world_: World, *tracks: Any
+) -> dict[str, list[PlacedContact]]:
+    from app.stages.depth import background, map_in_world
+    from app.stages.worldframe import agreed, place_on_background
+
+    clip, choice, marked = inputs
+    known = background(context.media.frames(clip), [map_in_world(each, world_) for each in maps], world_.cameras, masks)
+    total, done = max(1, sum(len(entry[2]) for entry in marked)), 0
+    found: dict[str, list[PlacedContact]] = {}
+    for (track_id, name, contacts_, _), track in zip(marked, tracks, strict=True):
+        found[track_id] = []
+        for contact in contacts_:
+            context.progress(done / total)
+            found[track_id].append(place_on_background(contact, name, track, choice, world_, known))
+            done += 1
     return agreed(found, {entry[0]: track for entry, track in zip(marked, tracks, strict=True)}, world_)
 
 

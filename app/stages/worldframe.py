@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import attrs
 import numpy as np
@@ -17,6 +17,11 @@ from app.stages.results import Array, PlacedContact, World
 from imitation import CameraPath
 from imitation.errors import InputError, NoSolution
 
+if TYPE_CHECKING:
+    from imitation.depth import Background
+
+SOUNDINGS = 5
+"""Frames of a contact in which the background under it is asked."""
 FIRM = 0.5
 """A local ground that fewer of the points nearby speak for is not believed against the other contacts."""
 APART = 0.08
@@ -117,6 +122,40 @@ def place_contact(contact: Contact, name: str, track: Any, choice: WorldChoice, 
         )
     place = np.median(np.array(places), axis=0)
     return PlacedContact(first, last, place, ground.name, float(ground.residual), _support(ground))
+
+
+def place_on_background(
+    contact: Contact, name: str, track: Any, choice: WorldChoice, world: World, known: Background
+) -> PlacedContact:
+    """Put a contact where its point's rays meet the measured background; where that has no depth, on the local ground.
+
+    The residual is how far the background near it strays from a plane, and the places of its frames from their median.
+
+    Raises ``InputError`` when the track is not there during the contact, or no ground is found at all.
+    """
+    first, last = contact.span.first, contact.span.last
+    frames = [t for t in range(first, last + 1) if np.isfinite(track.positions[t]).all()]
+    if contact.place is not None or not frames:
+        return place_contact(contact, name, track, choice, world)
+    surest = sorted(frames, key=lambda t: (-round(float(track.confidence[t]), 2), abs(2 * t - first - last)))[
+        :SOUNDINGS
+    ]
+    places, off, reason = [], [], ""
+    for frame in sorted(surest):
+        try:
+            place, residual = known.place(frame, track.positions[frame])
+        except NoSolution as refusal:
+            reason = str(refusal)
+            continue
+        places.append(place)
+        off.append(residual)
+    if not places:
+        instead = place_contact(contact, name, track, choice, world)
+        return attrs.evolve(instead, ground=f"{instead.ground}, for {reason[0].lower()}{reason[1:].rstrip('.')}")
+    place = np.median(np.array(places), axis=0)
+    apart = np.linalg.norm(np.array(places) - place, axis=1)
+    residual = float(np.sqrt(np.mean(np.square(off)) + np.mean(np.square(apart))))
+    return PlacedContact(first, last, place, "the measured background", residual)
 
 
 def agreed(

@@ -7,7 +7,7 @@ from typing import Any
 
 import attrs
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from imitation.cameras.path import CameraPath
 from imitation.depth.colours import choose_depth, gains, gather
@@ -15,7 +15,7 @@ from imitation.depth.depthmap import DepthMap
 from imitation.depth.pictures import Pictures
 from imitation.depth.projection import consensus, inverse_of, projected_inverse
 from imitation.errors import InputError
-from imitation.geometry.projection import Camera
+from imitation.geometry.projection import Array, Camera
 
 SOURCES = 10  # key frames whose depth is brought to a frame
 DONORS = 28  # frames whose colours are looked at, near ones first
@@ -150,6 +150,38 @@ class Background:
         support = np.where(taken, votes, own.confidence).astype(np.uint8)
         left = weak & ~taken
         return self._map(frame, _extended(np.where(taken, found, inverse), left, left), support)
+
+    def place(self, frame: int, pixel: ArrayLike, *, radius: float | None = None) -> tuple[Array, float]:
+        """Where the ray of a frame's pixel meets the background, seen there or in other frames only; see ``DepthMap``.
+
+        A foot hides the ground it stands on: key frames in which it is elsewhere show it. Only depth that another key
+        frame confirms counts.
+
+        Parameters
+        ----------
+        pixel : (2,) x, y. radius : pixels round it that are asked; None: 8 at a width of 960, at least 4.
+
+        Returns
+        -------
+        place : (3,) world. residual : rms distance from a plane along the rays, world units.
+
+        Raises
+        ------
+        NoSolution
+            No depth is known round the pixel.
+        """
+        spot, size = np.asarray(pixel, np.float64), self.pictures.size
+        reach = radius or max(4.0, 8 * max(size) / 960)
+        wanted = np.zeros(size[::-1], bool)
+        if spot.shape == (2,) and np.isfinite(spot).all():
+            left, top = np.maximum(np.floor(spot - reach), 0).astype(int)
+            right, bottom = np.maximum(np.ceil(spot + reach) + 1, 0).astype(int)
+            wanted[top:bottom, left:right] = True
+        own = [each for each in self.maps if each.frame == frame]
+        sources = own + [each for each in self._spread(frame) if each.frame != frame]
+        layers = np.stack([self._brought(each, frame, 1, wanted) for each in sources])
+        found = self._map(frame, *consensus(layers, self.tolerance))
+        return found.place(spot, radius=reach)
 
     def camera(self, frame: int) -> Camera:
         """A frame's camera."""

@@ -75,7 +75,9 @@ class DepthMap:
             raise InputError(f"A place in the picture is two finite numbers (x, y), but got {spot}.")
         left, top = (int(max(0, np.floor(c - radius))) for c in spot)
         right, bottom = (int(np.ceil(c + radius)) + 1 for c in spot)
-        rows, columns = np.mgrid[top : min(bottom, height), left : min(right, width)]
+        # Nothing of the picture is near a pixel far outside it.
+        bottom, right = max(min(bottom, height), top), max(min(right, width), left)
+        rows, columns = np.mgrid[top:bottom, left:right]
         z = self.depth[top:bottom, left:right].astype(np.float64)
         dx, dy = columns - spot[0], rows - spot[1]
         near = np.isfinite(z) & (np.hypot(dx, dy) <= radius)

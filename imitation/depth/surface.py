@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from imitation.depth.depthmap import DepthMap
 from imitation.errors import InputError
 from imitation.geometry.projection import Array
+from imitation.progress import Progress, silent
 
 STEP, CUT = 2, 0.03
 
@@ -89,6 +90,7 @@ def joined_mesh(
     step: int = STEP,
     cut: float = CUT,
     least: int = 2,
+    progress: Progress | None = None,
 ) -> BackgroundMesh:
     """One mesh of several frames: each adds what the ones before it did not see.
 
@@ -98,10 +100,13 @@ def joined_mesh(
     if not depths:
         raise InputError("A background mesh needs the depth of at least one frame.")
     parts: list[BackgroundMesh] = []
+    report = progress or silent
     for n, depth in enumerate(depths):
-        fresh = np.isfinite(depth.depth)
+        report(n / len(depths))
+        fresh = np.zeros(depth.depth.shape, bool)
+        fresh[::step, ::step] = np.isfinite(depth.depth[::step, ::step])
         for before in depths[:n]:
-            fresh &= ~_seen(depth, before, least)
+            fresh[::step, ::step] &= ~_seen(depth, before, least, step)
         picture = None if pictures is None else pictures[n]
         parts.append(background_mesh(depth, picture, step=step, cut=cut, least=least, wanted=fresh))
     starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
@@ -112,11 +117,11 @@ def joined_mesh(
     )
 
 
-def _seen(depth: DepthMap, before: DepthMap, least: int) -> NDArray[np.bool_]:
-    """Which pixels (h, w) of a map show what an earlier one holds already."""
+def _seen(depth: DepthMap, before: DepthMap, least: int, step: int) -> NDArray[np.bool_]:
+    """Which of every ``step``-th pixel of a map show what an earlier one holds already."""
     height, width = depth.depth.shape
-    rows, columns = np.mgrid[:height, :width]
-    points = depth.camera.lift(np.stack([columns, rows], axis=-1), depth.depth.astype(np.float64))
+    rows, columns = np.mgrid[:height:step, :width:step]
+    points = depth.camera.lift(np.stack([columns, rows], axis=-1), depth.depth[::step, ::step].astype(np.float64))
     pixels, z = before.camera.project(points), before.camera.depth(points)
     at = np.rint(np.nan_to_num(pixels, nan=-1.0)).astype(int)
     inside = (at >= 0).all(axis=-1) & (at[..., 0] < before.depth.shape[1]) & (at[..., 1] < before.depth.shape[0])

@@ -108,9 +108,9 @@ def set_ground(
     depth_tracks: Iterable[str] = (),
     depth: float | None = None,
 ) -> Edit:
-    """Choose where contacts lie: local fit, plane through selected points, or tracks of constant depth."""
-    if kind not in ("local", "plane", "depth"):
-        raise ModelError(f"The ground is local, plane or depth, not {kind!r}.")
+    """Choose where contacts lie: local fit, measured background, plane of selected points, or constant depth."""
+    if kind not in ("local", "background", "plane", "depth"):
+        raise ModelError(f"The ground is local, background, plane or depth, not {kind!r}.")
     points = tuple(checked_place(point) for point in plane_points)
     if points and len(points) < 3:
         raise ModelError(f"A plane needs at least 3 selected points, but got {len(points)}: select more.")
@@ -122,6 +122,7 @@ def set_ground(
     world = attrs.evolve(document.world, ground=kind, plane_points=points, depth_tracks=held, depth=depth)
     words = {
         "local": "Fit the ground near each contact",
+        "background": "Put contacts onto the measured background",
         "plane": "Use one ground plane",
         "depth": "Keep points at constant depth",
     }

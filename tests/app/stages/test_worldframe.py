@@ -10,8 +10,8 @@ from app.model.tracks import Contact
 from app.model.values import Interval
 from app.model.world import WorldChoice
 from app.stages.results import PlacedContact, World
-from app.stages.worldframe import agreed, make_world, place_contact
-from imitation import CameraPath, InputError
+from app.stages.worldframe import agreed, make_world, place_contact, place_on_background
+from imitation import CameraPath, InputError, NoSolution
 
 LEVEL = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 FRAMES = 30
@@ -84,3 +84,34 @@ def test_failed_cameras_make_no_world() -> None:
     path = CameraPath(np.eye(3)[None], np.eye(3)[None], np.zeros((1, 3)), "failed", reason="Too dark.")
     with pytest.raises(InputError, match="Too dark"):
         make_world(WorldChoice(), path)
+
+
+def test_a_contact_on_the_measured_background_says_how_sure_it_is(world: World) -> None:
+    """The median of the places that the surest frames give; without depth there the local ground, and why."""
+    place = np.array([0.3, 4.0, 0.0])
+    track = seen(world, place)
+    track.confidence[3] = 0.1
+    asked: list[int] = []
+
+    class Known:
+        def place(self, frame: int, pixel: np.ndarray) -> tuple[np.ndarray, float]:
+            asked.append(frame)
+            return place + np.array([0, 0.01 * (frame % 2), 0]), 0.02
+
+    contact = Contact(Interval(2, 9))
+    found = place_on_background(contact, "paw", track, WorldChoice(ground="background"), world, Known())  # type: ignore[arg-type]
+    assert 3 not in asked
+    assert len(asked) == 5
+    assert found.ground == "the measured background"
+    assert np.abs(found.place - place).max() <= 0.01
+    assert 0.02 < found.residual < 0.03
+    assert found.support == 1
+
+    class Nothing:
+        def place(self, frame: int, pixel: np.ndarray) -> tuple[np.ndarray, float]:
+            raise NoSolution("No background depth is known near pixel (3, 4) of frame 2.")
+
+    instead = place_on_background(contact, "paw", track, WorldChoice(ground="background"), world, Nothing())  # type: ignore[arg-type]
+    assert "the ground plane" in instead.ground
+    assert instead.ground.endswith("for no background depth is known near pixel (3, 4) of frame 2")
+    np.testing.assert_allclose(instead.place, place, atol=1e-6)
