@@ -23,6 +23,12 @@ SUNK = 0.02
 """Share of the character's height that it may lie below the ground: a paw is softer than that."""
 BEHIND = 0.15
 """Share of the character's height behind a measured surface that counts as sticking in it and not as hidden."""
+FLAT, NEAR = 0.08, 0.12
+"""Shares of the character's height: contacts that differ by more stand on steps; so far round a foot a step reaches."""
+SURE = 0.5
+"""Confidence below which a point is a guess, from which nothing can drift."""
+FEW = 0.01
+"""Share of the vertices that may be stretched more: single folds in an armpit are not seen."""
 JOIN = 2
 """Frames between two bad spans that do not part them."""
 
@@ -61,8 +67,9 @@ class Check:
     Attributes
     ----------
     problems : the worst first.
-    drift : track id -> (n,) pixels, NaN where the point is not seen or the user moved its vertex. limit : pixels.
-    stretch : (n, 2) least and largest length of an edge over that at rest.
+    drift : track id -> (n,) pixels, NaN where the point is not surely seen or the user moved its vertex.
+    limit : pixels.
+    stretch : (n, 2) length of edges over that at rest, which all but one vertex in a hundred keep within.
     sunk : (n,) deepest place below the ground, world units; zeros where no ground is known.
     """
 
@@ -80,14 +87,15 @@ def drift_limit(session: Session) -> float:
 
 
 def drift_in_frame(session: Session, character_id: str, frame: int, vertices: Array) -> dict[int, float]:
-    """Pixels between paired vertices of a pose (v, 3) and where their points want them, by vertex; unseen ones are left
-    out, and so are all where the motion before any edit is not known.
+    """Pixels between paired vertices of a pose (v, 3) and where their points want them, by vertex.
+
+    Guesses are left out, and so are all where the motion before any edit is not known.
     """
     solved: Any = session.ready(session.stages.base(character_id))
     if solved is None or frame >= len(solved) or len(vertices) != len(solved.rest):
         return {}
     keys = solved.keys
-    seen = np.flatnonzero(keys.observed[frame])
+    seen = np.flatnonzero(keys.observed[frame] & (keys.confidence[frame] >= SURE))
     away = solved.cameras[frame].project(vertices[keys.vertices[seen]]) - keys.pixels[frame, seen]
     return dict(zip(keys.vertices[seen].tolist(), np.hypot(*away.T).tolist(), strict=True))
 
@@ -114,7 +122,7 @@ def check_motion(session: Session, character_id: str, *, heard: Callable[[], obj
             heard()
         vertices = animated.vertices[frame]
         values = meter(vertices)
-        stretch[frame] = values.min(), values.max()
+        stretch[frame] = np.quantile(values, (FEW, 1 - FEW))
         where[frame, 0] = int(np.argmax(np.abs(np.log(values))))
         deep = sunk_in_frame(session, world, frame, vertices)
         if deep is not None:
@@ -135,21 +143,26 @@ def check_motion(session: Session, character_id: str, *, heard: Callable[[], obj
 def sunk_in_frame(session: Session, world: World, frame: int, vertices: Array) -> Array | None:
     """How far the vertices (v, 3) of a pose are below the ground (v,), world units; None where no ground is known.
 
-    The ground is where the feet stand and stood: the steps of a stair, else the plane.
+    The ground is as high as the contacts; where they are of different heights, it is known under standing feet only.
     """
     from imitation.geometry.penetration import below_ground
-    from imitation.rendering import footing_at
 
     if world.depth is not None:
         return None
-    contacts = {
-        track.id: [(each.first, each.last, each.place) for each in placed]
+    known = [
+        each
         for track in session.document.tracks
-        if track.contacts and isinstance(placed := session.ready(session.stages.contacts(track.id)), list) and placed
-    }
-    footing = footing_at(contacts, frame, world.normal)
-    if footing is not None:
-        return below_ground(vertices, footing.points, world.normal)
+        if track.contacts and isinstance(placed := session.ready(session.stages.contacts(track.id)), list)
+        for each in placed
+    ]
+    size = float(np.ptp(vertices @ world.normal)) or 1.0
+    levels = np.array([float(each.place @ world.normal) for each in known])
+    if len(levels) and np.ptp(levels) > FLAT * size:
+        # Steps: what is known is the ground under the feet that stand.
+        places = [each.place for each in known if each.first <= frame <= each.last]
+        return below_ground(vertices, places, world.normal, reach=NEAR * size) if places else np.zeros(len(vertices))
+    if len(levels):
+        return below_ground(vertices, [world.normal * float(np.median(levels))], world.normal)
     return below_ground(vertices, [world.normal * world.offset], world.normal) if world.grounded else None
 
 
@@ -158,7 +171,8 @@ def _drift(character: Character, solved: Any, animated: Animation) -> dict[str, 
 
     keys = solved.keys
     away = project_points(solved.cameras, animated.vertices[:, keys.vertices]) - keys.pixels
-    pixels = np.where(keys.observed, np.hypot(away[..., 0], away[..., 1]), np.nan)
+    sure = keys.observed & (keys.confidence >= SURE)
+    pixels = np.where(sure, np.hypot(away[..., 0], away[..., 1]), np.nan)
     moved = {vertex for edit in character.edits.values() for vertex, move in edit.moves.items() if not move.muted}
     columns = {name: pixels[:, number] for number, name in enumerate(keys.names)}
     # Where the user moved the vertex of a point, the point is no longer what the motion should follow.

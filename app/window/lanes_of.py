@@ -159,10 +159,11 @@ def _solution(project: Project, character: Character, solved: NDArray[np.bool_] 
     last = max(project.frame_count - 1, 0)
     state = project.motion_state(character.id)
     bars: list[Bar] = []
-    if state == "running" and solved is not None and solved.any():
+    if state in ("running", "stale") and solved is not None and solved.any():
+        done = "accent" if state == "running" else "ok"
         edges = np.flatnonzero(np.diff(solved)) + 1
         for begin, end in zip((0, *edges), (*edges, len(solved) - 1), strict=True):
-            bars.append(Bar(int(begin), int(end), "accent" if solved[begin] else "warn"))
+            bars.append(Bar(int(begin), int(end), done if solved[begin] else "warn"))
     elif state != "blocked":
         texts = {"fresh": "up to date", "stale": "waiting", "running": "being solved", "failed": "failed"}
         bars.append(Bar(0, last, STATE_COLOURS.get(state, "line2"), text=texts.get(state, "not solved yet")))

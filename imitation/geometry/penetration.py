@@ -9,7 +9,9 @@ from imitation.errors import InputError
 from imitation.geometry.projection import Array, Camera
 
 
-def below_ground(vertices: ArrayLike, places: ArrayLike, normal: ArrayLike = (0.0, 0.0, 1.0)) -> Array:
+def below_ground(
+    vertices: ArrayLike, places: ArrayLike, normal: ArrayLike = (0.0, 0.0, 1.0), *, reach: float = np.inf
+) -> Array:
     """How far each vertex is below the ground (v,), world units, 0 above it.
 
     Parameters
@@ -18,6 +20,7 @@ def below_ground(vertices: ArrayLike, places: ArrayLike, normal: ArrayLike = (0.
     places : (k, 3) points of the ground; under a vertex it is as high as at the nearest of them, seen along the normal:
         one point is a plane, the feet on a stair are its steps.
     normal : (3,) pointing up.
+    reach : world units; farther from every place, seen along the normal, nothing is known of the ground.
     """
     points = np.asarray(vertices, np.float64)
     ground = np.asarray(places, np.float64).reshape(-1, 3)
@@ -28,8 +31,9 @@ def below_ground(vertices: ArrayLike, places: ArrayLike, normal: ArrayLike = (0.
     heights, level = points @ up, ground @ up
     flat, flat_ground = points - heights[:, None] * up, ground - level[:, None] * up
     away = np.stack([((flat - each) ** 2).sum(1) for each in flat_ground], axis=1)
-    deep: Array = np.maximum(level[np.argmin(away, axis=1)] - heights, 0.0)
-    return deep
+    deep = np.maximum(level[np.argmin(away, axis=1)] - heights, 0.0)
+    known: Array = np.where(away.min(axis=1) <= reach**2, deep, 0.0)
+    return known
 
 
 def behind_surface(vertices: ArrayLike, camera: Camera, depth: NDArray[np.floating], *, reach: float) -> Array:

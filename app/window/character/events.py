@@ -239,6 +239,7 @@ class Events(QObject):
             if mode:
                 self.pair(False)
                 work.inspector.place_in_first.open()
+                work.inspector.ensureWidgetVisible(work.inspector.place_in_first)
             work.placing.choose(mode)
             work.placing.find()
             self.say()

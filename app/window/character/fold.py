@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app.window import icons
@@ -22,10 +23,7 @@ class Fold(QWidget):
         row.setSpacing(8)
         self.head = QToolButton()
         self.head.setText(title)
-        self.head.setProperty("toggle", "true")
-        self.head.setProperty("fold", "true")
         self.head.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        self.head.setCheckable(True)
         self.head.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.caption = label("", "caption")
         row.addWidget(self.head)
@@ -37,14 +35,18 @@ class Fold(QWidget):
         self.column.setContentsMargins(0, 0, 0, 0)
         self.column.setSpacing(8)
         outer.addWidget(self.body)
-        self.head.toggled.connect(self._show)
-        self.head.setChecked(opened)
+        face = self.head.font()
+        face.setWeight(QFont.Weight.DemiBold)
+        self.head.setFont(face)
+        self.head.clicked.connect(lambda: self._show(not self.opened))
         self._show(opened)
 
     def open(self) -> None:
         """Unfold it."""
-        self.head.setChecked(True)
+        self._show(True)
 
     def _show(self, opened: bool) -> None:
+        self.opened = opened
+        self.head.setAccessibleDescription("unfolded" if opened else "folded")
         self.head.setIcon(icons.icon("unfolded" if opened else "folded", "text2", "text2"))
         self.body.setVisible(opened)

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox
 
 from app.model.character import Character
+from app.model.edits import characters
 from app.window.character.frame_section import FrameSection
 from app.window.character.handles_of import vertex_title
 from app.window.character.move_section import MoveSection
+from app.window.character.name_chooser import NameChooser
 from app.window.character.pair_section import PairSection
 from app.window.character.place_section import PlaceSection
 from app.window.character.vertex_section import Place3, VertexSection
@@ -29,13 +30,14 @@ class CharacterInspector(ScrollColumn):
         super().__init__()
         self.project: Project | None = None
         self.character: Character | None = None
-        self.chooser = QComboBox()
-        self.chooser.setAccessibleName("Character")
+        self.name = NameChooser()
+        self.chooser = self.name.chooser
         self.chooser.activated.connect(self._choose)
+        self.name.renamed.connect(self._rename)
         self.vertex = VertexSection()
         self.moves, self.fit = MoveSection(), FrameSection()
         self.pairs, self.place_in_first = PairSection(), PlaceSection()
-        self.rows.addWidget(Row("Character", self.chooser))
+        self.rows.addWidget(Row("Character", self.name))
         for section in (self.vertex, self.moves, self.fit, self.pairs, self.place_in_first):
             self.rows.addWidget(section)
         self.rows.addStretch(1)
@@ -79,6 +81,10 @@ class CharacterInspector(ScrollColumn):
     def _choose(self, index: int) -> None:
         if self.project is not None:
             self.project.select_character(self.project.document.characters[index].id)
+
+    def _rename(self, name: str) -> None:
+        if self.project is not None and self.character is not None:
+            self.project.edit(characters.rename_character, self.character.id, name)
 
     def _choose_vertex(self, vertex: int) -> None:
         if self.project is not None:

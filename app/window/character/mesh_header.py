@@ -63,7 +63,7 @@ class MeshHeader(QWidget):
         self.opacity.valueChanged.connect(self.faded)
         row.addWidget(self.opacity)
         row.addWidget(icon_button("fit", "Show everything", self.fitted.emit, "fit"))
-        self.layers, self.over_film = Layers(), False
+        self.layers, self.over_film, self.following = Layers(), False, True
         self.missing: dict[str, str] = {}
         self.variants: list[str] = []
         self.heat = ""
@@ -106,7 +106,13 @@ class MeshHeader(QWidget):
             on = self.layers.on(name, over_film=self.over_film)
             action = self._entry(menu, text, on, self.missing.get(name, ""))
             action.toggled.connect(lambda on, name=name: self.layer.emit(name, on))
+        if not self.over_film:
+            menu.addSeparator()
+            self._entry(menu, "Keep the character in view", self.following).toggled.connect(self._follow)
         return menu
+
+    def _follow(self, on: bool) -> None:
+        self.following = on
 
     def compare_menu(self) -> QMenu:
         """What can be shown beside the result."""

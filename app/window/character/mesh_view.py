@@ -35,6 +35,8 @@ from imitation.geometry import Camera
 
 LIBRARIES = "app.window.viewport.scene"
 """The module whose loading loads the 3D libraries."""
+SPOKEN = 700
+"""Pixels of width from which the header has room for a caption."""
 Array = NDArray[np.float64]
 
 
@@ -56,6 +58,7 @@ class MeshView(Panel):
         self.calm: Callable[[], bool] = lambda: True
         self.heat: Heat | None = None
         self._mesh: tuple[int, int] = (0, 0)
+        self._frame = 0
         self._ground: tuple[float, ...] = ()
         self._scene: tuple[Array, Array, float] | None = None
         self._background: tuple[Array, NDArray[np.int32], NDArray[np.uint8]] | None = None
@@ -82,6 +85,7 @@ class MeshView(Panel):
         self.panes.happened.connect(self.happened)
         self.panes.hovered.connect(self.pointed)
         self.look_buttons["orbit"].setChecked(True)
+        self.opacity.hide()
 
     @property
     def viewport(self) -> Viewport | None:
@@ -145,7 +149,7 @@ class MeshView(Panel):
     def look(self, name: str) -> None:
         """Orbit, look through the camera or from its side."""
         self.look_buttons[name].setChecked(True)
-        self.opacity.setEnabled(name == "camera" or SPLIT in self.panes.panes)
+        self.opacity.setVisible(name == "camera")
         if self.viewport is not None:
             self.viewport.look(name)  # type: ignore[arg-type]
             self.bar.over_film = self.viewport.through_camera
@@ -191,7 +195,8 @@ class MeshView(Panel):
 
     def changed_size(self) -> None:
         """Fit the buttons into the header."""
-        self.bar.fit_width(self.width() - 40)
+        self.bar.fit_width(self.width())
+        self.header.caption.setMaximumWidth(16777215 if self.width() >= SPOKEN else 0)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Fit the buttons into the header."""
@@ -200,12 +205,23 @@ class MeshView(Panel):
 
     # what is shown -----------------------------------------------------------------------------------------------
 
-    def show_mesh(self, vertices: Array, faces: NDArray[np.int32], colours: NDArray[np.uint8] | None) -> None:
-        """Show a pose; the mesh is made anew only where it is another one."""
-        self.make()
+    def show_mesh(
+        self, vertices: Array, faces: NDArray[np.int32], colours: NDArray[np.uint8] | None, frame: int = 0
+    ) -> None:
+        """Show the pose of a frame; the mesh is made anew only where it is another one.
+
+        In another frame the view in space goes along with the character, unless it shall stand still.
+        """
+        main = self.make()
         self._show_empty(False)
         self._colours = colours
         mesh = (id(faces), len(vertices))
+        step = vertices.mean(axis=0) - main.view.vertices.mean(axis=0) if mesh == self._mesh else np.zeros(3)
+        if frame != self._frame and self.bar.following and step.any():
+            for pane in self.panes.own:
+                pane.view.carry(step)
+            self.panes.follow()
+        self._frame = frame
         for pane in self.panes.own:
             if mesh != self._mesh:
                 pane.view.show_mesh(vertices, faces, colours)

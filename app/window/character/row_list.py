@@ -159,7 +159,7 @@ class RowList(QWidget):
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRoundedRect(QRectF(1, top + 1, self.width() - 2, ROW - 2), 4, 4)
             painter.setPen(Qt.PenStyle.NoPen)
-        left = 6.0 if entry.head else 24.0
+        left = 34.0 if not entry.head and not entry.colour else 22.0
         if entry.colour:
             painter.setBrush(look.colour(entry.colour))
             painter.drawEllipse(QPointF(left - 10, top + ROW / 2), 4.5, 4.5)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.actions.checking import Check, Problem
 from app.window import icons
-from app.window.controls import Elided, button, icon_button, label, separator
+from app.window.controls import button, icon_button, label, separator
 
 
 class WarningLine(QWidget):
@@ -24,11 +24,10 @@ class WarningLine(QWidget):
         row = QHBoxLayout()
         row.setSpacing(8)
         self.icon = QLabel()
-        self.text = Elided("", "label")
-        self.show_button = button("Show", lambda: self.wanted.emit("worst"), name="go")
-        row.addWidget(self.icon)
+        self.text = label("", "label")
+        self.text.setWordWrap(True)
+        row.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(self.text, 1)
-        row.addWidget(self.show_button)
         column.addLayout(row)
         below = QHBoxLayout()
         below.setSpacing(2)
@@ -41,9 +40,12 @@ class WarningLine(QWidget):
             )
         )
         self.steps = (before, after)
+        self.show_button = button("Show", lambda: self.wanted.emit("worst"), name="go")
         below.addWidget(self.count, 1)
         for step in self.steps:
             below.addWidget(step)
+        below.addSpacing(6)
+        below.addWidget(self.show_button)
         column.addLayout(below)
 
     def show_check(self, check: Check | None, *, measuring: bool, at: Problem | None) -> None:
@@ -59,7 +61,6 @@ class WarningLine(QWidget):
             text, token, name = ("Looking for problems…" if measuring else "Not checked yet"), "text3", "note"
         self.icon.setPixmap(icons.pixmap(name, token, 18))
         self.text.setText(text)
-        self.text.update()
         self.show_button.setEnabled(shown is not None)
         place = problems.index(shown) + 1 if shown is not None else 0
         count = f"{place} of {len(problems)}, worst first" if len(problems) > 1 else ""

@@ -246,7 +246,7 @@ class CharacterWorkspace(Workspace):
             self.posing.show_committed(character, self.frame)
         self.mesh.header.title.setText(character.name)
         self.mesh.header.caption.setText(f"{len(vertices):,} vertices")
-        self.mesh.show_mesh(vertices, shape.faces, shape.colours)
+        self.mesh.show_mesh(vertices, shape.faces, shape.colours, self.frame)
         self._show_world(vertices)
         self._show_handles(character, vertices)
         self._show_compared(shape.faces, shape.colours)

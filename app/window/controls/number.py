@@ -63,6 +63,7 @@ class NumberField(QLineEdit):
         self._value = limits.clamped(value)
         self._press: tuple[QPointF, float] | None = None
         self._dragging = False
+        self._assumed = False
         self.setMinimumWidth(44)
         self.setProperty("number", "true")
         self.setReadOnly(True)
@@ -77,10 +78,18 @@ class NumberField(QLineEdit):
         """The number as it is."""
         return self._value
 
-    def set_value(self, value: float) -> None:
-        """Show a value that came from the document; says nothing back."""
+    def set_value(self, value: float, *, assumed: bool = False) -> None:
+        """Show a value that came from the document; says nothing back.
+
+        ``assumed`` : nobody gave it: it is shown dimmed, and typing the very same number gives it.
+        """
         if not self.isReadOnly() or self._dragging:
             return
+        if assumed != self._assumed:
+            self._assumed = assumed
+            self.setProperty("assumed", "true" if assumed else "false")
+            self.style().unpolish(self)
+            self.style().polish(self)
         self._value = self.limits.clamped(value)
         self._show()
 
@@ -139,8 +148,9 @@ class NumberField(QLineEdit):
             self._type()
             return
         value = self.limits.parsed(self.text())
+        given = self._assumed and self.isModified()
         self._stop_typing()
-        if value is not None and value != self._value:
+        if value is not None and (value != self._value or given):
             self._value = value
             self.changed.emit(value)
         self._show()
@@ -193,7 +203,9 @@ class NumberField(QLineEdit):
 
     def event(self, event: QEvent) -> bool:
         """Keep single letters in the field while a number is typed, and the keys that step it."""
-        own = isinstance(event, QKeyEvent) and event.key() in (Qt.Key.Key_Up, Qt.Key.Key_Down)
+        own = isinstance(event, QKeyEvent) and (
+            event.key() in (Qt.Key.Key_Up, Qt.Key.Key_Down) or (event.key() == Qt.Key.Key_Escape and self._dragging)
+        )
         if event.type() == QEvent.Type.ShortcutOverride and (own or not self.isReadOnly()):
             event.accept()
             return True

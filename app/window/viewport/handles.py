@@ -55,7 +55,9 @@ def paint_handles(painter: QPainter, lens: Lens, handles: Sequence[Handle], poin
         if handle.selected:
             _axes(painter, lens, handle, x, y)
         if handle.selected or handle.vertex in pointed:
-            marks.plate(painter, x + 14, y - 20, handle.title, theme.active().colour(_colour(handle)))
+            fits = x + 14 + marks.plate_size(handle.title)[0] < lens.size[0]
+            look, side = theme.active().colour(_colour(handle)), "left" if fits else "right"
+            marks.plate(painter, x + 14 if fits else x - 14, y - 20, handle.title, look, align=side)
 
 
 def _colour(handle: Handle) -> str:

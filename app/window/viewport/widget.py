@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -167,6 +168,12 @@ class Viewport(QWidget):
         """Show the layers of the present look."""
         for name in IN_SCENE:
             self.scene.show(name, self.shows(name))
+        self.redraw()
+
+    def carry(self, shift: NDArray[np.float64]) -> None:
+        """Let the orbit go along with the subject by a step (3,), world."""
+        x, y, z = (float(value) for value in np.add(self.orbit.target, shift))
+        self.orbit = replace(self.orbit, target=(x, y, z))
         self.redraw()
 
     def look_like(self, other: Viewport) -> None:
