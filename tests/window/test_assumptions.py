@@ -70,6 +70,26 @@ def test_how_the_camera_is_held_is_typed_and_reset(shell: Shell) -> None:
     wait_for(lambda: not shell.project.progress)
 
 
+def test_the_assumed_number_typed_is_given(shell: Shell) -> None:
+    """1.6 m is what is assumed and stands there dimmed: typed by hand it is said; clicked and left it is not."""
+    fields = assumed(shell)
+    shell.opened.keeper.automatic = False
+    shell.video.scene.ensureWidgetVisible(fields.height)
+    assert fields.height.text() == "1.60 m"
+    QTest.mouseClick(fields.height, LEFT)
+    QTest.keyClick(fields.height, Qt.Key.Key_Return)
+    assert shell.project.document.world.height is None, "looked at, not typed"
+    type_number(fields.height, "1.6")
+    assert shell.project.document.world.height == 1.6
+    settle()
+    assert fields.height_reset.isEnabled()
+    versions = len(shell.project.session.history.versions)
+    type_number(fields.height, "1.6")
+    assert len(shell.project.session.history.versions) == versions, "said already"
+    shell.project.cancel_work()
+    wait_for(lambda: not shell.project.progress)
+
+
 def test_several_points_are_held_at_a_constant_depth(shell: Shell) -> None:
     """Two points are chosen in the picture and held; the panel names them; none again."""
     fields = assumed(shell)

@@ -70,7 +70,7 @@ class Assumptions(QWidget):
             (self.height, self.height_reset, choice.height),
             (self.depth, self.depth_reset, choice.depth),
         ):
-            field.set_value(value if value is not None else field.limits.default or 0.0)
+            field.set_value(value if value is not None else field.limits.default or 0.0, assumed=value is None)
             reset.setEnabled(value is not None)
         names = [project.document.track(track).name for track in choice.depth_tracks]
         held = choice.ground == "depth" and bool(names)
