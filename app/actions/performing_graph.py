@@ -165,7 +165,7 @@ def layout(complete: Array, groups: NDArray[np.int64]) -> Array:
         return np.zeros((count, 2))
     wanted = _wanted(complete, groups)
     places = _majorised(wanted, _start(wanted), rounds=80 if count <= 2 * CROWD else 30)
-    places = _apart(_lying(places) * WIDE)
+    places = _apart(_evened(_lying(places)) * WIDE)
     return np.asarray(places - places.mean(axis=0))
 
 
@@ -217,6 +217,15 @@ def _lying(places: Array) -> Array:
     axes = axes * np.sign(axes[np.arange(len(axes)), np.abs(axes).argmax(axis=1)])[:, None]
     turned = centred @ axes.T
     return turned if turned.shape[1] == 2 else np.column_stack([turned, np.zeros(len(turned))])
+
+
+def _evened(places: Array) -> Array:
+    """Nearer to an even spread along both sides, so that many nodes share the room there is."""
+    count = len(places)
+    share = 0.55 * min(1.0, max(0.0, (count - 8) / 40))
+    ranks = np.argsort(np.argsort(places, axis=0), axis=0) / (count - 1)
+    even = places.min(axis=0) + ranks * np.ptp(places, axis=0)
+    return np.asarray((1 - share) * places + share * even)
 
 
 def _apart(places: Array, rounds: int = 200) -> Array:

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from app.actions.performing_graph import Tried
     from app.window.performance.state import PerformanceState
 
-CROWD = 60
+CROWD, TANGLE = 60, 180
+"""Above so many motions they stand in groups; above so many transitions only the chosen motion's are drawn fully."""
 FAINT = 400
 """So many pruned transitions are shown at most while the graph's size is dragged."""
 Places = Mapping[int, tuple[float, float]]
@@ -31,10 +32,10 @@ def picture_of(
     kept = tried.kept if tried is not None else np.isfinite(graph.weights)
     path = _path(state, tried)
     nodes = _nodes(state, places, set(path), typed)
-    crowded = len(nodes) > CROWD
     shown = {mark.node for mark in nodes}
     edges = _edges(graph, kept, shown, path, loop=state.document.performance.loop, faint=tried is not None)
-    return Picture(nodes, edges, _groups(state, nodes) if crowded else (), crowded)
+    crowded = len(nodes) > CROWD or sum(edge.kind == "kept" for edge in edges) > TANGLE
+    return Picture(nodes, edges, _groups(state, nodes) if len(nodes) > CROWD else (), crowded)
 
 
 def _path(state: PerformanceState, tried: Tried | None) -> tuple[int, ...]:

@@ -15,6 +15,8 @@ Thumbnail = Callable[[int], QImage | None]
 SOLID, ROUND = Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap
 PICTURED, NAMED = 34.0, 30.0
 """Least diameter in pixels at which a node shows its picture, and every node its name."""
+SHARES = (0.42, 0.55, 0.3, 0.68, 0.2, 0.8)
+"""Where along an edge its cost may stand, the best first."""
 
 
 def paint_ground(painter: QPainter, width: int, height: int, lens: Lens) -> None:
@@ -66,8 +68,8 @@ def _paint_edge(
     elif edge.kind == "faint":
         colour, width = look.colour("line2", 70), 1.0
     else:
-        colour = look.colour("text2" if near else "line2", 60 if dim or not whole else 230 if near else 150)
-        width = 1.0 + 1.6 * edge.strength
+        colour = look.colour("text2" if near else "line2", 30 if dim or not whole else 230 if near else 150)
+        width = 1.0 + 1.6 * edge.strength if whole else 1.0
     gap = lens.size / 2 + (3.5 if edge.kind == "path" else 2.0)
     begin, middle, end = bow(lens.pixel(start.x, start.y), lens.pixel(goal.x, goal.y), gap)
     path = QPainterPath(QPointF(*begin))
@@ -93,25 +95,39 @@ def _paint_head(painter: QPainter, before: Place, tip: Place, colour: QColor, si
 
 
 def paint_costs(painter: QPainter, picture: Picture, lens: Lens) -> None:
-    """The cost of every edge of the path, on a plate in the middle of it."""
+    """The cost of every edge of the path, on a plate where it covers neither a node nor a name nor another cost."""
     look = theme.active()
     face = fonts.font(fonts.CAPTION, QFont.Weight.DemiBold)
     metrics = QFontMetricsF(face)
     painter.setFont(face)
     marks = {mark.node: mark for mark in picture.nodes}
+    taken = [room for mark in picture.nodes for room in _rooms(mark, lens)]
     for edge in picture.edges:
         if edge.kind != "path" or edge.start not in marks or edge.goal not in marks:
             continue
         start, goal = (lens.pixel(marks[node].x, marks[node].y) for node in (edge.start, edge.goal))
-        x, y = on_bow(*bow(start, goal, lens.size / 2), 0.4)
+        curve = bow(start, goal, lens.size / 2)
         text = f"{edge.cost:.2f}"
         plate = QRectF(0, 0, metrics.horizontalAdvance(text) + 10, metrics.height() + 2)
-        plate.moveCenter(QPointF(x, y))
+        for share in (*SHARES, SHARES[0]):
+            plate.moveCenter(QPointF(*on_bow(*curve, share)))
+            if not any(plate.intersects(room) for room in taken):
+                break
+        taken.append(QRectF(plate))
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.colour("canvas", 235))
         painter.drawRoundedRect(plate, 4, 4)
         painter.setPen(look.colour("accent"))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+
+
+def _rooms(mark: NodeMark, lens: Lens) -> tuple[QRectF, QRectF]:
+    """What a node and its name cover."""
+    x, y = lens.pixel(mark.x, mark.y)
+    radius = lens.size / 2
+    wide = QFontMetricsF(fonts.font(fonts.CAPTION, QFont.Weight.DemiBold)).horizontalAdvance(mark.name) + 8
+    name = QRectF(x - wide / 2, y + radius, wide, 24 if lens.size >= NAMED or mark.on_path else 0)
+    return QRectF(x - radius, y - radius, 2 * radius, 2 * radius), name
 
 
 def paint_node(

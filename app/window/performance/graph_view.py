@@ -10,8 +10,8 @@ SMALLEST, LARGEST = 14.0, 120.0
 """Pixels of a node's diameter."""
 FITTED = 92.0
 """Pixels a node has at most where everything is shown."""
-WIDEST, STRETCH, SHARE = 150.0, 1.9, 1.2
-"""Pixels a node diameter of the layout has at most, how much more in one direction; what a node takes of the less."""
+WIDEST, STRETCH, SHARE = 150.0, 2.6, 0.62
+"""Pixels of the layout's unit at most, how much more in one direction; what a node takes of the way to the nearest."""
 NAME = (96.0, 44.0)
 """Room for names and badges beside and below."""
 BEND = 0.16
@@ -111,9 +111,21 @@ def fitted(picture: Picture, width: float, height: float) -> Lens:
     across = min(max(width - size - NAME[0], 60.0) / wide, WIDEST)
     down = min(max(height - size - NAME[1], 40.0) / high, WIDEST)
     across, down = min(across, STRETCH * down), min(down, STRETCH * across)
-    size = max(min(size, SHARE * min(across, down)), SMALLEST)
+    size = max(min(size, SHARE * _nearest(xs, ys, across, down)), SMALLEST)
     dx = width / 2 - across * (max(xs) + min(xs)) / 2
     return Lens(size, across, down, dx, (height - NAME[1] / 2) / 2 - down * (max(ys) + min(ys)) / 2)
+
+
+def _nearest(xs: list[float], ys: list[float], across: float, down: float) -> float:
+    """The way in pixels between the two nodes that are nearest."""
+    order = sorted(zip((x * across for x in xs), (y * down for y in ys), strict=True))
+    best = math.inf
+    for place, (x, y) in enumerate(order):
+        for other_x, other_y in order[place + 1 :]:
+            if other_x - x >= best:
+                break
+            best = min(best, math.hypot(other_x - x, other_y - y))
+    return best
 
 
 def node_at(picture: Picture, lens: Lens, x: float, y: float) -> NodeMark | None:
