@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 import attrs
 import numpy as np
@@ -29,6 +29,7 @@ SHUTTER = 0.5
 """Share of the frame time that a film camera's shutter is usually open."""
 GRAIN_FRAMES = 5
 MOST_WORKERS = 4
+SheetForm = Literal["png", "exr"]
 Made = TypeVar("Made")
 
 
@@ -226,13 +227,30 @@ def in_order(make: Callable[[int], Made], frames: Sequence[int]) -> Iterator[Mad
 
 
 def write_sheets(
-    folder: Path, sheets: Iterable[Picture], count: int, progress: Progress | None = None, *, first: int = 0
+    folder: Path,
+    sheets: Iterable[Matte],
+    count: int,
+    progress: Progress | None = None,
+    *,
+    first: int = 0,
+    form: SheetForm = "png",
 ) -> None:
-    """Write pictures with alpha (h, w, 4) as PNG files numbered from ``first`` on, for a compositing program."""
+    """Write sheets as pictures with alpha, numbered from ``first`` on, for a compositing program.
+
+    PNG in sRGB, colours not multiplied by alpha; EXR in linear light, multiplied.
+    """
+    from app.formats.exr import need_exr, write_exr
+
+    if form == "exr":
+        need_exr()
     report = progress or silent
     if folder.exists() and not folder.is_dir():
         raise InputError(f"The pictures cannot be written to {folder}: it is a file, not a folder.")
     folder.mkdir(parents=True, exist_ok=True)
     for done, sheet in enumerate(sheets):
-        write_image(folder / f"{first + done:05d}.png", sheet)
+        name = f"{first + done:05d}.{form}"
+        if form == "exr":
+            write_exr(folder / name, sheet.linear())
+        else:
+            write_image(folder / name, sheet.rgba())
         report((done + 1) / count)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
-from app.actions.compositing import Composition, Standing, in_order, write_sheets
+from app.actions.compositing import Composition, SheetForm, Standing, in_order, write_sheets
 from app.actions.moving import Moving, animated, floor, placed_contacts, solved_world
 from app.actions.results import rate
 from app.actions.session import Session
@@ -74,14 +74,14 @@ def render_sheets(
     *,
     standing: Standing | None = None,
     frames: range | None = None,
+    form: SheetForm = "png",
     progress: Progress | None = None,
 ) -> None:
-    """Write animated characters and their shadows without the film: a folder of PNG files with alpha."""
+    """Write animated characters and their shadows without the film: a folder of PNG or EXR files with alpha."""
     motions = animated(session, character_ids)
     scene = Composition.of(session, motions, standing or Standing())
     filmed = frames or range(len(scene))
-    sheets = in_order(lambda frame: scene.sheet(frame).rgba(), filmed)
-    write_sheets(folder, sheets, len(filmed), progress, first=filmed.start)
+    write_sheets(folder, in_order(scene.sheet, filmed), len(filmed), progress, first=filmed.start, form=form)
 
 
 def compare_film(

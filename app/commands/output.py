@@ -15,6 +15,7 @@ from app.actions.results import export_animation
 from app.actions.session import Session
 from app.commands.console import Console
 from app.commands.project import PATH, PROJECT
+from app.formats.exr import need_exr
 from imitation.errors import NoSolution
 
 CHARACTER = click.option("--character", "name", help="Which character, where there are several.")
@@ -36,6 +37,7 @@ CHARACTER = click.option("--character", "name", help="Which character, where the
     help="Blur their own motion: the share of the frame time that the shutter is open, 0.5 where none is given.",
 )  # fmt: skip
 @click.option("--grain", is_flag=True, help="Put the film's grain over them.")
+@click.option("--format", "form", type=click.Choice(["png", "exr"]), help="Of a folder's pictures: png, or exr.")
 @click.option("--light-turn", type=float, default=0.0, help="Turn the main light, degrees clockwise from above.")
 @click.option("--light-lift", type=float, default=0.0, help="Raise the main light, degrees.")
 @click.option("--brightness", type=click.FloatRange(0, 10), default=1.0, help="Factor on their light.")
@@ -43,13 +45,18 @@ CHARACTER = click.option("--character", "name", help="Which character, where the
 @click.pass_obj
 def render(
     console: Console, project: Path, target: Path, names: tuple[str, ...], view: Any, dim: float, points: bool,
-    grain: bool, **scene: Any,
+    grain: bool, form: Any, **scene: Any,
 ) -> None:  # fmt: skip
     """Film the characters over the video and from the side.
 
-    TARGET ends in .mp4; a name without a suffix becomes a folder of PNG files with alpha, characters and shadows alone.
+    TARGET ends in .mp4; a name without a suffix becomes a folder of PNG or EXR files with alpha,
+    characters and shadows alone.
     """
     standing = Standing(grain=None if grain else 0.0, **scene)
+    if form == "exr" and not target.suffix:
+        need_exr()
+    if form and target.suffix:
+        raise click.UsageError("--format is of a folder's pictures: give a folder.")
     if not target.suffix and (view in ("side", "both") or dim or points or standing.plate):
         raise click.UsageError("A folder of PNG files holds the characters alone: no view, plate, fading or points.")
     with closing(Session.open(project)) as session:
@@ -68,7 +75,7 @@ def render(
                 shown = view or ("both" if standing == Standing() else "video")
                 render_film(session, ids, target, view=shown, dim=dim, points=points, standing=standing, progress=bar)
             else:
-                render_sheets(session, ids, target, standing=standing, progress=bar)
+                render_sheets(session, ids, target, standing=standing, form=form or "png", progress=bar)
         console.answer({"film": str(target)}, [f"Wrote {target}"])
 
 

@@ -59,6 +59,17 @@ class Matte:
         made[..., 3] = np.clip(np.rint(255 * self.alpha), 0, 255)
         return made
 
+    def linear(self) -> NDArray[np.float32]:
+        """The sheet in linear light (h, w, 4), colours multiplied by alpha, for programs that composite so."""
+        from imitation.rendering.mesh import linear
+
+        there = self.alpha > 1e-6
+        made = np.zeros((*self.alpha.shape, 4), np.float32)
+        straight = np.clip(self.light[there] / self.alpha[there, None], 0, 255)
+        made[there, :3] = linear(straight) * self.alpha[there, None]
+        made[..., 3] = self.alpha
+        return made
+
 
 def flattened(
     layers: Sequence[Layer],

@@ -51,6 +51,12 @@ class ScenePanel(ScrollColumn):
         self.grounds: dict[str, QPushButton] = {}
         for kind, text, words in (
             ("local", "Fit the ground at each contact", "Stairs and slopes: the points near each foot count."),
+            ("background", "The measured background", "Each contact lies on it, also where the foot hides it."),
+            (
+                "background",
+                "The measured background",
+                "Each contact lies where its point meets the measured depth, which is measured first where it is missing.",
+            ),
             ("plane", "One ground plane", "One level ground for all contacts."),
             ("depth", "Constant depth", "No ground: the subject stays equally far from the camera."),
         ):

@@ -8,6 +8,7 @@ from contextlib import closing
 from pathlib import Path
 
 import numpy as np
+import OpenEXR
 import pytest
 
 from app.actions.compositing import Composition, Standing, composited
@@ -69,6 +70,14 @@ def test_a_folder_gets_characters_and_shadows_with_alpha(measured: Path, tmp_pat
     assert shaded.sum() > 20
     assert read_image(files[0]).shape[:2] == alpha.shape
     assert run(["render", str(measured), str(tmp_path / "other"), "--plate"]) == USAGE
+    exr = tmp_path / "linear"
+    assert run(["--quiet", "render", str(measured), str(exr), "--shadow", "--occlusion", "--format", "exr"]) == DONE
+    linear = OpenEXR.File(str(exr / "00004.exr")).channels()["RGBA"].pixels.astype(float)
+    np.testing.assert_allclose(linear[..., 3], alpha / 255, atol=3e-3)
+    solid = alpha == 255
+    shown = 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    assert np.abs(shown[solid][:, 2::-1] - sheet[solid][:, :3]).max() < 2
+    assert run(["render", str(measured), str(tmp_path / "film.mp4"), "--format", "exr"]) == USAGE
 
 
 def test_without_parallax_one_sentence_says_what_there_is(
