@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QDialog, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.window import settings, theme
-from app.window.controls import button, label, separator
+from app.window.controls import Chooser, button, label, separator
 
 if TYPE_CHECKING:
     from app.window.shell import Shell
@@ -50,9 +50,8 @@ class SettingsDialog(QDialog):
 
     def _choice(
         self, text: str, values: Sequence[object], said: Sequence[str], present: object, call: Callable[[object], None]
-    ) -> QComboBox:
-        box = QComboBox()
-        box.setAccessibleName(text)
+    ) -> Chooser:
+        box = Chooser(name=text)
         for value, words in zip(values, said, strict=True):
             box.addItem(words, value)
         box.setCurrentIndex(list(values).index(present))

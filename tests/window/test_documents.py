@@ -57,26 +57,6 @@ def test_the_title_names_the_project_and_marks_changes(shell: Shell) -> None:
     assert shell.isWindowModified()
 
 
-def test_the_name_is_typed_at_the_top(shell: Shell) -> None:
-    """A double click begins, Enter takes, Escape and an empty name leave; letters are no shortcuts meanwhile."""
-    name = shell.bar.name
-    QTest.mouseDClick(name, LEFT)
-    QTest.keyClicks(name, "Pan & Zoom")
-    QTest.keyClick(name, Qt.Key.Key_Return)
-    assert shell.project.document.name == "Pan & Zoom"
-    assert shell.project.session.history.undo_label == "Rename the project to Pan & Zoom"
-    for typed, key in (("other", Qt.Key.Key_Escape), ("", Qt.Key.Key_Return)):
-        name.setFocus()
-        QTest.keyClick(name, Qt.Key.Key_Return)
-        QTest.keyClick(name, Qt.Key.Key_Backspace)
-        QTest.keyClicks(name, typed)
-        QTest.keyClick(name, key)
-        assert name.text() == "Pan & Zoom"
-    assert shell.video.tool == "select"
-    QTest.keyClick(shell, Qt.Key.Key_Z, CONTROL)
-    assert name.text() == "small"
-
-
 def test_unsaved_work_of_a_project_is_a_question(open_shell: Callable[[Session], Shell], session: Session) -> None:
     """The saved project opens; Recover brings the work as one entry, Undo takes it back; asked once only."""
     place = session.folder.path
