@@ -51,7 +51,6 @@ class ScenePanel(ScrollColumn):
         self.grounds: dict[str, QPushButton] = {}
         for kind, text, words in (
             ("local", "Fit the ground at each contact", "Stairs and slopes: the points near each foot count."),
-            ("background", "The measured background", "Each contact lies on it, also where the foot hides it."),
             (
                 "background",
                 "The measured background",
