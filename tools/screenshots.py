@@ -26,6 +26,7 @@ from app.model.edits import scene  # noqa: E402
 from app.window.application import make_application  # noqa: E402
 from app.window.shell import Shell  # noqa: E402
 from app.window.video.scene_picking import seen_points  # noqa: E402
+from tools.performance_pictures import take_performance  # noqa: E402
 
 TARGET = ROOT / "docs" / "screenshots"
 SIZES = ((1440, 900), (1920, 1080))
@@ -86,6 +87,9 @@ def main() -> None:
         camera.live(20, lambda: not shell.video.canvas.picture.isNull())
         _video(shell, camera)
         _character(shell, camera)
+        if shell.project is not None:
+            shell.project.session.history.mark_saved()
+        take_performance(shell, camera, ROOT / "build" / "Moves.motionwright")
         if shell.project is not None:
             shell.project.cancel_work()
             shell.project.session.history.mark_saved()

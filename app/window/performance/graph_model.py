@@ -84,21 +84,27 @@ def _edges(
     steps = set(itertools.pairwise(path))
     if loop and len(path) > 1:
         steps.add((path[-1], path[0]))
-    dear = max(float(np.max(graph.complete[kept], initial=0.0)), 1e-9)
-    marks = []
-    for start, goal in np.argwhere(kept).tolist():
-        if start in shown and goal in shown:
-            marks.append(_edge(graph, start, goal, dear, "path" if (start, goal) in steps else "kept"))
-    if faint:
-        pruned = [pair for pair in np.argwhere(~kept & np.isfinite(graph.complete)).tolist() if set(pair) <= shown]
-        pruned.sort(key=lambda pair: graph.complete[pair[0], pair[1]])
-        marks += [_edge(graph, start, goal, dear, "faint") for start, goal in pruned[:FAINT]]
-    return tuple(marks)
+    finite = np.isfinite(graph.complete)
+    seen = np.zeros(len(kept), bool)
+    seen[list(shown)] = True
+    inside = seen[:, None] & seen
+    marks = _marks(graph, kept & inside, steps, "kept")
+    return marks + _marks(graph, ~kept & finite & inside, set(), "faint", FAINT) if faint else marks
 
 
-def _edge(graph: Any, start: int, goal: int, dear: float, kind: str) -> EdgeMark:
-    cost = float(graph.complete[start, goal])
-    return EdgeMark(start, goal, cost, max(0.0, 1.0 - cost / dear), kind, bool(graph.poor[start, goal]))
+def _marks(
+    graph: Any, chosen: NDArray[np.bool_], steps: set[tuple[int, int]], kind: str, most: int | None = None
+) -> tuple[EdgeMark, ...]:
+    """Transitions by cost, the cheapest first; those of the path are told apart."""
+    pairs = np.argwhere(chosen)
+    costs = graph.complete[chosen]
+    order = np.argsort(costs, kind="stable")[:most]
+    dear = max(float(costs.max(initial=0.0)), 1e-9)
+    rows = zip(pairs[order].tolist(), costs[order].tolist(), graph.poor[chosen][order].tolist(), strict=True)
+    return tuple(
+        EdgeMark(start, goal, cost, max(0.0, 1.0 - cost / dear), "path" if (start, goal) in steps else kind, poor)
+        for (start, goal), cost, poor in rows
+    )
 
 
 def _groups(state: PerformanceState, nodes: tuple[NodeMark, ...]) -> tuple[GroupMark, ...]:

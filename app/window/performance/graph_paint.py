@@ -15,6 +15,8 @@ Thumbnail = Callable[[int], QImage | None]
 SOLID, ROUND = Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap
 PICTURED, NAMED = 34.0, 30.0
 """Least diameter in pixels at which a node shows its picture, and every node its name."""
+THIN = 500
+"""So many edges of one kind are drawn thinly at most, the cheapest first."""
 SHARES = (0.42, 0.55, 0.3, 0.68, 0.2, 0.8)
 """Where along an edge its cost may stand, the best first."""
 
@@ -48,28 +50,44 @@ def paint_groups(painter: QPainter, groups: tuple[GroupMark, ...], lens: Lens) -
 
 
 def paint_edges(painter: QPainter, picture: Picture, lens: Lens, chosen: int) -> None:
-    """All edges; in a large graph only those of the chosen node and of the path are drawn fully."""
+    """All edges; in a large graph only those of the chosen node and of the path fully, of the others the cheapest."""
     marks = {mark.node: mark for mark in picture.nodes}
-    for kind in ("faint", "kept", "path"):
-        for edge in picture.edges:
-            if edge.kind == kind and edge.start in marks and edge.goal in marks:
-                whole = kind == "path" or not picture.crowded or chosen in (edge.start, edge.goal)
-                _paint_edge(painter, edge, marks[edge.start], marks[edge.goal], lens, whole, chosen)
+    thin: dict[str, list[EdgeMark]] = {"faint": [], "kept": []}
+    whole: list[EdgeMark] = []
+    for edge in picture.edges:
+        if edge.start in marks and edge.goal in marks:
+            near = chosen in (edge.start, edge.goal)
+            full = edge.kind == "path" or (edge.kind == "kept" and (near or not picture.crowded))
+            (whole if full else thin[edge.kind]).append(edge)
+    for kind, alpha in (("faint", 70), ("kept", 110)):
+        _paint_thin(painter, thin[kind][:THIN], marks, lens, theme.active().colour("line2", alpha))
+    for edge in sorted(whole, key=lambda edge: edge.kind == "path"):
+        _paint_edge(painter, edge, marks[edge.start], marks[edge.goal], lens, chosen)
 
 
-def _paint_edge(
-    painter: QPainter, edge: EdgeMark, start: NodeMark, goal: NodeMark, lens: Lens, whole: bool, chosen: int
+def _paint_thin(
+    painter: QPainter, edges: list[EdgeMark], marks: dict[int, NodeMark], lens: Lens, colour: QColor
 ) -> None:
+    """Many edges at one stroke, without heads."""
+    path = QPainterPath()
+    for edge in edges:
+        start, goal = marks[edge.start], marks[edge.goal]
+        begin, middle, end = bow(lens.pixel(start.x, start.y), lens.pixel(goal.x, goal.y), lens.size / 2 + 2)
+        path.moveTo(*begin)
+        path.quadTo(*middle, *end)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(QPen(colour, 1.0))
+    painter.drawPath(path)
+
+
+def _paint_edge(painter: QPainter, edge: EdgeMark, start: NodeMark, goal: NodeMark, lens: Lens, chosen: int) -> None:
     look = theme.active()
     near = chosen in (edge.start, edge.goal)
-    dim = start.dim or goal.dim
     if edge.kind == "path":
         colour, width = look.colour("accent"), 2.2 + 1.6 * edge.strength
-    elif edge.kind == "faint":
-        colour, width = look.colour("line2", 70), 1.0
     else:
-        colour = look.colour("text2" if near else "line2", 30 if dim or not whole else 230 if near else 150)
-        width = 1.0 + 1.6 * edge.strength if whole else 1.0
+        alpha = 30 if start.dim or goal.dim else 230 if near else 150
+        colour, width = look.colour("text2" if near else "line2", alpha), 1.0 + 1.6 * edge.strength
     gap = lens.size / 2 + (3.5 if edge.kind == "path" else 2.0)
     begin, middle, end = bow(lens.pixel(start.x, start.y), lens.pixel(goal.x, goal.y), gap)
     path = QPainterPath(QPointF(*begin))
@@ -80,7 +98,7 @@ def _paint_edge(
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(pen)
     painter.drawPath(path)
-    if whole and edge.kind != "faint" and math.dist(begin, end) > 12:
+    if math.dist(begin, end) > 12:
         _paint_head(painter, on_bow(begin, middle, end, 0.86), end, colour, 6.0 + width)
 
 

@@ -1,10 +1,10 @@
-"""What another mu would give, while the slider moves: tried in the background, the newest wish only."""
+"""What another mu would give, while the slider moves: tried at once, or in the background where that takes long."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QElapsedTimer, QObject, Signal
 
 from app.window.background_call import BackgroundCalls
 from app.window.performance.state import PerformanceState
@@ -13,8 +13,12 @@ if TYPE_CHECKING:
     from app.actions.performing_graph import Tried
 
 
+AT_ONCE = 0.012
+"""Seconds: what took no longer the last time is tried without a thread, which would take as long again to wake."""
+
+
 class Trial(QObject):
-    """Gives what was tried by ``changed``; ``result`` is None while nothing is tried.
+    """Gives what was tried by ``changed``; ``result`` is None while nothing is tried. The newest wish counts.
 
     After the slider is let go the result stays until the document's own path is there, so that nothing blinks.
     """
@@ -26,6 +30,7 @@ class Trial(QObject):
         self.state, self._calls = state, calls
         self.result: Tried | None = None
         self._wish: float | None = None
+        self._took = 0.0
         self._busy = False
         self._round = 0
         self.holding = False
@@ -45,6 +50,7 @@ class Trial(QObject):
 
     def drop(self) -> None:
         """Show the document as it is."""
+        self._took = 0.0
         self.holding, self._wish = False, None
         self._round += 1
         self._set(None)
@@ -55,8 +61,16 @@ class Trial(QObject):
             return
         from app.actions.performing_graph import tried
 
-        self._wish, self._busy = None, True
         document, begun = self.state.document, self._round
+        self._wish = None
+        if self._took < AT_ONCE:
+            clock = QElapsedTimer()
+            clock.start()
+            found = tried(document, graph, mu)
+            self._took = clock.nsecsElapsed() / 1e9
+            self._done(found, begun)
+            return
+        self._busy = True
         self._calls.run(lambda: tried(document, graph, mu), lambda made: self._done(made, begun), self._failed)
 
     def _done(self, made: Tried, begun: int) -> None:
