@@ -83,8 +83,7 @@ def test_a_dropped_folder_is_read_and_its_guesses_are_confirmed(composed: Shell,
     assert made.fps == 15.0, "played at the rate of the first sequence"
     shown = library(composed)
     card = shown.cards.cards[-1]
-    assert "frame rate was guessed: 25" in card.warnings
-    assert "filmed at 25 fps, played at 15" in card.warnings
+    assert card.warnings == ("guessed: 25 fps, Z up, metres", "filmed at 25 fps, played at 15")
     assert composed.pages.in_sight.state.sequence_id == made.id
     quiet(composed)
     assert shown.cards.cards[-1].strip, "the motions were found"

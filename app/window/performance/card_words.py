@@ -26,13 +26,12 @@ def strip_of(state: PerformanceState, sequence: CapturedSequence) -> tuple[Piece
 
 def warnings_of(sequence: CapturedSequence) -> tuple[str, ...]:
     """What the program guessed or converted, one sentence each."""
-    words = []
-    if "fps" in sequence.guessed:
-        words.append(f"frame rate was guessed: {sequence.source_fps:g}")
-    if "up" in sequence.guessed:
-        words.append(f"up axis was guessed: {sequence.up.upper()}")
-    if "unit" in sequence.guessed:
-        words.append(f"unit was guessed: {UNIT_WORDS.get(sequence.unit, f'{sequence.unit:g} m')}")
+    said = {
+        "fps": f"{sequence.source_fps:g} fps",
+        "up": f"{sequence.up.upper()} up",
+        "unit": UNIT_WORDS.get(sequence.unit, f"{sequence.unit:g} m"),
+    }
+    words = [f"guessed: {', '.join(said[fact] for fact in sequence.guessed)}"] if sequence.guessed else []
     if sequence.fps != sequence.source_fps:
         words.append(f"filmed at {sequence.source_fps:g} fps, played at {sequence.fps:g}")
     return tuple(words)

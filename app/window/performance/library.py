@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QPoint, Qt, Signal
+from PySide6.QtCore import QEvent, QPoint, Qt, Signal
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QImage
-from PySide6.QtWidgets import QFileDialog, QMenu, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFileDialog, QMenu, QVBoxLayout, QWidget
 
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence
@@ -293,12 +293,21 @@ class Library(Panel):
         menu.addAction("Play as captured", lambda: self.play(sequence_id))
         menu.addAction("Rename", lambda: self.cards.rename(sequence_id))
         words = "Hide its motions" if sequence.visible else "Show its motions"
+        menu.addAction("Facts of its files", lambda: self.unfold(0))
+        menu.addAction("How its motions are found", lambda: self.unfold(1))
         menu.addAction(words, lambda: self._edit(sequences.show_sequence, sequence_id, not sequence.visible))
         if sequence.media is not None:
             menu.addAction("Find its files again…", lambda: self.ask_again(sequence_id))
         menu.addSeparator()
         menu.addAction("Remove from the project", lambda: self.remove(sequence_id))
         return menu
+
+    def unfold(self, number: int) -> None:
+        """Open a section below the cards and bring it into sight."""
+        section = self.sections[number]
+        section.head.setChecked(True)
+        QApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest)
+        self.body.ensureWidgetVisible(section, 0, 12)
 
     def _menu(self, sequence_id: str, place: QPoint) -> None:
         self.menu_for(sequence_id).popup(place)

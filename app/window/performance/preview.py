@@ -14,6 +14,7 @@ from app.window.controls import Elided, ErrorBar, Panel, icon_button, toggle
 from app.window.lazy_view import LazyView
 from app.window.performance.player import Dropped, FrameReader, ahead
 from app.window.performance.preview_notes import MODES, Mode, cut_lines, cut_near, paint_lines, place_line
+from app.window.performance.preview_source import Source, front, opener, wanted_source
 from app.window.performance.state import PerformanceState
 from app.window.viewport.hosts import Choice
 from app.window.viewport.lens import Lens
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
 
 NO_SEQUENCE = "Add a sequence to see it here."
 NO_PERFORMANCE = "Choose motions in the graph: what they make is played here."
+READING = "Reading the frames…"
+ASIDE = 0.7
+"""Radians from the performer's front to where one looks from at first."""
 STEP = 6
 """Frames from the present one to its ghosts, away from cuts."""
 
@@ -41,7 +45,7 @@ class Preview(Panel):
         self.frame: ShownFrame | None = None
         self.shown = -1
         self.dropped = Dropped()
-        self._source: tuple[Any, ...] = ()
+        self._source: Source = ()
         self._count = 0
         self._due = -1
         self._watch = QElapsedTimer()
@@ -107,14 +111,14 @@ class Preview(Panel):
         state.sequence_changed.connect(self.refresh)
         state.document_changed.connect(self.refresh)
         state.compare_changed.connect(self._compared)
-        state.cut_changed.connect(lambda _: self._over())
+        state.cut_changed.connect(lambda _: self._again())
         state.playback.playing_changed.connect(self._playing)
 
     # what is shown -----------------------------------------------------------------------------------------------
 
     def refresh(self, *_: object) -> None:
         """Show what the state says; frames that are still right stay."""
-        source = self._wanted_source()
+        source = wanted_source(self.state, self.mode)
         performing = self.state.shows == "performance"
         for mode, each in self.mode_buttons.items():
             each.setEnabled(performing and (mode != "blended" or self.state.document.performance.blend))
@@ -127,44 +131,13 @@ class Preview(Panel):
             return  # a new path is being placed: the one before stays in sight
         self._source = source
         self._count = 0
-        self.reader.open(self._opener(source))
+        self.reader.open(opener(self.state, self.mode, source))
         if not source:
             self._show_nothing()
         elif self.isVisible():
             self.view.want()
-
-    def _wanted_source(self) -> tuple[Any, ...]:
-        """What has to be opened, as a value that changes with it; empty for nothing."""
-        state, project = self.state, self.state.project
-        if project is None or not state.document.sequences:
-            return ()
-        if state.shows == "performance":
-            if state.placed is None:
-                return ()
-            return (project, state.placed, state.blends if self.mode == "blended" else None, self.mode)
-        found = next((each for each in state.document.sequences if each.id == state.sequence_id), None)
-        if found is None:
-            return ()
-        motion = None if found.character is None else project.result(project.session.stages.animation(found.character))
-        if found.character is not None and motion is None:
-            return ()
-        files = (found.id, found.media, found.up, found.unit, found.level, found.source_fps, found.source_count)
-        return (project, *files, found.fps, found.frame_count, motion)
-
-    def _opener(self, source: tuple[Any, ...]) -> Any:
-        if not source:
-            return None
-        session, mode, sequence = source[0].session, self.mode, self.state.sequence_id
-        performing = self.state.shows == "performance"
-
-        def make() -> Any:
-            from app.actions.performing_playback import performance_shown, sequence_shown
-
-            if performing:
-                return performance_shown(session, blended=mode == "blended", aligned=mode != "filmed")
-            return sequence_shown(session, sequence)
-
-        return make
+            if self.frame is None:
+                self.view.say(READING)
 
     def _caption(self) -> str:
         if self.state.shows == "performance":
@@ -255,10 +228,11 @@ class Preview(Panel):
         return 0 < way <= open_ < self._count // 2
 
     def _ghost_places(self) -> list[int]:
-        if not self.ghost_button.isChecked() or self.state.playback.playing:
+        state, place = self.state, self.state.place
+        near = cut_near(state, place) if state.shows == "performance" else None
+        chosen = near is not None and near.number == state.cut
+        if state.playback.playing or not (self.ghost_button.isChecked() or chosen):
             return []
-        place = self.state.place
-        near = cut_near(self.state, place) if self.state.shows == "performance" else None
         both = [near.position - 1, near.position] if near is not None else [place - STEP, place + STEP]
         return [each for each in both if 0 <= each < self._count and each != place]
 
@@ -270,6 +244,8 @@ class Preview(Panel):
         ghosts = [each for each in map(self.reader.frame, self._ghost_places()) if each is not None]
         step = abs(place - self.shown)
         elapsed = step / self.state.fps if self.shown >= 0 and step <= self.state.fps else math.inf
+        if self.frame is None:
+            self.stage.face(front(self.state, self.mode, place, frame) + ASIDE)
         self.frame, self.shown = frame, place
         self.stage.show(frame, ghosts, elapsed=elapsed, moving=playing)
         if playing:

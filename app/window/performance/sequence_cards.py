@@ -20,8 +20,8 @@ from PySide6.QtWidgets import QLineEdit, QSizePolicy, QWidget
 
 from app.window import fonts, icons, theme
 
-GAP, PICTURE, LEFT, BASE, LINE = 8, 64, 84, 84, 18
-STRIP = (50, 12)
+GAP, PICTURE, LEFT, BASE, LINE = 6, 54, 74, 70, 18
+STRIP = (47, 12)
 """Top and height of the strip in its card."""
 
 
@@ -246,8 +246,8 @@ class SequenceCards(QWidget):
         self._picture(painter, card)
         painter.setOpacity(0.55 if card.hidden else 1.0)
         right = box.width() - 10
-        _text(painter, QRectF(LEFT, 8, right - LEFT, 18), card.name, "text", fonts.BODY, QFont.Weight.DemiBold)
-        _two(painter, QRectF(LEFT, 27, right - LEFT, 18), card.caption, card.state, card.tone)
+        _text(painter, QRectF(LEFT, 6, right - LEFT, 18), card.name, "text", fonts.BODY, QFont.Weight.DemiBold)
+        _two(painter, QRectF(LEFT, 25, right - LEFT, 18), card.caption, card.state, card.tone)
         self._strip(painter, card, QRectF(LEFT, STRIP[0], right - LEFT, STRIP[1]))
         for number, warning in enumerate(card.warnings):
             top = BASE - 4 + LINE * number
@@ -260,9 +260,9 @@ class SequenceCards(QWidget):
         if picture is None or picture.isNull():
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(theme.active().colour("panel"))
-            painter.drawRoundedRect(QRectF(10, 10, PICTURE, PICTURE), 4, 4)
+            painter.drawRoundedRect(QRectF(10, 8, PICTURE, PICTURE), 4, 4)
         else:
-            painter.drawImage(QRectF(10, 10, PICTURE, PICTURE), picture)
+            painter.drawImage(QRectF(10, 8, PICTURE, PICTURE), picture)
 
     def _strip(self, painter: QPainter, card: Card, room: QRectF) -> None:
         look = theme.active()

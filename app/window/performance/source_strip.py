@@ -110,7 +110,7 @@ class SourceStrip(Panel):
         count = sum(len(motion.textons) for motion in strip.motions)
         many = f"{len(strip.motions)} motion{'s' if len(strip.motions) != 1 else ''}"
         by_hand = self.sequence is not None and self.sequence.structure.boundaries is not None
-        words = f"{strip.count:,} frames, {many}, {count} textons"
+        words = f"{strip.count:,} frames, {many}, {count} texton{'s' if count != 1 else ''}"
         tail = ", finding the motions…" if stale else ", boundaries set by hand" if by_hand else ""
         self.header.caption.setText(words + tail)
 
