@@ -14,15 +14,13 @@ from app.model.character import Character
 from app.stages.results import Animation, Array, World
 from imitation.errors import InputError
 
-Kind = Literal["drift", "stretch", "ground", "ambiguous"]
+Kind = Literal["drift", "stretch", "ground", "background", "ambiguous"]
 DRIFT = 3.0 / 540.0
 """Share of the picture's height that a vertex may be from its point: 3 pixels of a 540p film, which is seen."""
 STRETCH = 1.35
 """Edges a third longer, or as much shorter, are seen as such on fur and cloth."""
 SUNK = 0.02
 """Share of the character's height that it may lie below the ground: a paw is softer than that."""
-BEHIND = 0.15
-"""Share of the character's height behind a measured surface that counts as sticking in it and not as hidden."""
 FLAT, NEAR = 0.08, 0.12
 """Shares of the character's height: contacts that differ by more stand on steps; so far round a foot a step reaches."""
 SURE = 0.5
@@ -135,6 +133,7 @@ def check_motion(session: Session, character_id: str, *, heard: Callable[[], obj
     found = _drifting(drift, limit, names, character)
     found += _stretched(stretch, where[:, 0])
     found += _sinking(sunk, SUNK * height, where[:, 1], metric=world.metric)
+    found += _colliding(session, character, metric=world.metric)
     found += _ambiguous(session, character)
     order = sorted(found, key=lambda each: (-each.severity, each.first, each.subject))
     return Check(tuple(order), drift, limit, stretch, sunk)
@@ -147,7 +146,7 @@ def sunk_in_frame(session: Session, world: World, frame: int, vertices: Array) -
     """
     from imitation.geometry.penetration import below_ground
 
-    if world.depth is not None:
+    if session.document.world.ground == "depth":
         return None
     known = [
         each
@@ -164,6 +163,10 @@ def sunk_in_frame(session: Session, world: World, frame: int, vertices: Array) -
     if len(levels):
         return below_ground(vertices, [world.normal * float(np.median(levels))], world.normal)
     return below_ground(vertices, [world.normal * world.offset], world.normal) if world.grounded else None
+
+
+def _deep(value: float, metric: bool) -> str:
+    return f"{100 * value:.1f} cm" if metric else f"{value:.2g} units"
 
 
 def _drift(character: Character, solved: Any, animated: Animation) -> dict[str, Array]:
@@ -226,9 +229,21 @@ def _sinking(sunk: Array, limit: float, where: NDArray[np.int64], *, metric: boo
     for first, last in spans(sunk > limit):
         worst = first + int(np.argmax(sunk[first : last + 1]))
         value = float(sunk[worst])
-        deep = f"{100 * value:.1f} cm" if metric else f"{value:.2g} units"
-        text = f"{deep} below the ground, {_when(first, last)}"
+        text = f"{_deep(value, metric)} below the ground, {_when(first, last)}"
         found.append(Problem("ground", "", int(where[worst]), first, last, worst, value, limit, text))
+    return found
+
+
+def _colliding(session: Session, character: Character, *, metric: bool) -> list[Problem]:
+    """Where the character goes into the measured background, as far as that was computed."""
+    met: Any = session.ready(session.stages.penetration(character.id))
+    found = []
+    for first, last in spans(met.depth > met.tolerance) if met is not None else ():
+        worst = first + int(np.argmax(met.depth[first : last + 1]))
+        value = float(met.depth[worst])
+        text = f"{_deep(value, metric)} inside the background, {_when(first, last)}"
+        vertex = int(met.vertex[worst])
+        found.append(Problem("background", "", vertex, first, last, worst, value, float(met.tolerance), text))
     return found
 
 

@@ -9,8 +9,9 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from app.actions.checking import BEHIND, sunk_in_frame
+from app.actions.checking import sunk_in_frame
 from app.actions.session import Session
+from app.stages.collision import REACH
 from app.stages.results import Array, World
 from imitation.errors import InputError
 
@@ -84,7 +85,7 @@ def _sunk(session: Session, character_id: str, frame: int, vertices: Array) -> H
         raise InputError("The ground is not known yet: run what is missing first.")
     height = float(np.ptp(rest[:, 2])) or 1.0
     deep = sunk_in_frame(session, world, frame, vertices)
-    behind = _behind(session, frame, vertices, BEHIND * height)
+    behind = _behind(session, vertices, REACH * float(np.ptp(rest, axis=0).max()))
     if deep is None and behind is None:
         raise InputError(
             "No ground is known to sink into: mark contacts, choose the ground, or measure the background."
@@ -100,26 +101,29 @@ def _sunk(session: Session, character_id: str, frame: int, vertices: Array) -> H
     return Heat(_diverging(share), values, "Below the surface", ((0.0, "0"), (1.0, end)), (REST, HOT), note)
 
 
-def _behind(session: Session, frame: int, vertices: Array, reach: float) -> Array | None:
-    """How far the pose sticks in the measured background; None where none was measured."""
-    from imitation.geometry.penetration import behind_surface
-
-    seen = _depth_of(session, frame)
-    return None if seen is None else behind_surface(vertices, seen.camera, seen.depth, reach=reach)
+def _behind(session: Session, vertices: Array, reach: float) -> Array | None:
+    """How far the pose goes into the measured background (v,), 0 where nothing is known; None without one."""
+    collider = _collider(session, reach)
+    return None if collider is None else np.maximum(np.nan_to_num(collider.behind(vertices)), 0.0)
 
 
-def _depth_of(session: Session, frame: int) -> Any:
-    """The measured depth of a frame; the newest frame's is kept."""
-    from app.actions.backgrounds import solved_background
+def _collider(session: Session, reach: float) -> Any:
+    """The measured background to be met with; the newest is kept."""
+    from app.actions.scenery import background_for_view
 
-    key = (session.stages.depth.key, session.stages.world.key, frame)
-    held = session.media.memory.get("depth in sight")
+    stages = session.stages
+    if stages.depth not in session.cache:
+        return None
+    key = (stages.depth.key, stages.world.key, reach)
+    held = session.media.memory.get("collider")
     if held is None or held[0] != key:
+        from imitation.depth import Collider
+
         try:
-            known, _ = solved_background(session)
+            made = Collider(background_for_view(session), reach)
         except InputError:
-            return None
-        held = session.media.memory["depth in sight"] = (key, known.depth(frame))
+            made = None
+        held = session.media.memory["collider"] = (key, made)
     return held[1]
 
 

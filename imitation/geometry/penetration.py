@@ -1,12 +1,12 @@
-"""How deep the vertices of a mesh lie below the ground, or behind a measured surface."""
+"""How deep the vertices of a mesh lie below the ground."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from imitation.errors import InputError
-from imitation.geometry.projection import Array, Camera
+from imitation.geometry.projection import Array
 
 
 def below_ground(
@@ -34,23 +34,3 @@ def below_ground(
     deep = np.maximum(level[np.argmin(away, axis=1)] - heights, 0.0)
     known: Array = np.where(away.min(axis=1) <= reach**2, deep, 0.0)
     return known
-
-
-def behind_surface(vertices: ArrayLike, camera: Camera, depth: NDArray[np.floating], *, reach: float) -> Array:
-    """How far each vertex is behind what the camera sees (v,), world units, 0 in front of it or where nothing is known.
-
-    Parameters
-    ----------
-    vertices : (v, 3) world.
-    depth : (h, w) camera z of the background, NaN where unknown.
-    reach : world units; what lies deeper stands behind the thing and is hidden by it, it does not stick in it.
-    """
-    points = np.asarray(vertices, np.float64)
-    pixels, z = camera.project(points), camera.depth(points)
-    at = np.rint(np.nan_to_num(pixels, nan=-1.0)).astype(np.int64)
-    height, width = depth.shape
-    inside = (at >= 0).all(1) & (at[:, 0] < width) & (at[:, 1] < height) & (z > 0)
-    deep = np.zeros(len(points))
-    deep[inside] = z[inside] - depth[at[inside, 1], at[inside, 0]]
-    found: Array = np.where(np.isfinite(deep) & (deep > 0) & (deep <= reach), deep, 0.0)
-    return found

@@ -203,7 +203,7 @@ def test_a_vertex_may_be_clicked_before_its_point(posed: Shell) -> None:
 
 
 def test_pairs_and_unmatched_points_are_listed(posed: Shell) -> None:
-    """The link's button separates a pair: its point is then the first of the list, without a vertex; undo joins them."""
+    """The link's button separates a pair: its point is then first in the list, without a vertex; undo joins them."""
     pairs = posed.character.inspector.pairs
     nose = next(track for track in posed.project.document.tracks if track.name == "nose")
     number = character(posed).pairs[nose.id]

@@ -26,6 +26,7 @@ class Checks(QObject):
         self._calls = BackgroundCalls(self)
         self._key = self._wanted = ""
         self._closed = False
+        self._asked = ""
 
     @property
     def measuring(self) -> bool:
@@ -40,7 +41,7 @@ class Checks(QObject):
             return
         stages = project.session.stages
         stage = stages.animation(project.character_id)
-        key = stage.key
+        key = stage.key + self._met()
         if key != self._wanted:
             self._wanted = ""
         if key in (self._key, self._wanted) or project.progress or project.state(stage) != "fresh":
@@ -72,7 +73,26 @@ class Checks(QObject):
     def fresh(self) -> bool:
         """Whether what was measured is the motion wanted now."""
         project = self.project
-        return bool(project.character_id) and project.session.stages.animation(project.character_id).key == self._key
+        if not project.character_id:
+            return False
+        return project.session.stages.animation(project.character_id).key + self._met() == self._key
+
+    def _met(self) -> str:
+        """Marks a check that knows where the character meets the measured background."""
+        stage = self.project.session.stages.penetration(self.project.character_id)
+        return " met" if stage in self.project.session.cache else ""
+
+    def meet_background(self) -> None:
+        """Compute where the character meets the measured background, where there is one."""
+        project = self.project
+        if not project.character_id or project.progress:
+            return
+        stages = project.session.stages
+        stage = stages.penetration(project.character_id)
+        known = all(need in project.session.cache for need in stage.needs)
+        if known and project.state(stage) in ("missing", "stale") and stage.key != self._asked:
+            self._asked = stage.key
+            project.start(stage.label, stage)
 
     def find(self, which: str) -> Problem | None:
         """The "worst" problem, or the "next" or the "previous" one in the order of the frames; None without any."""

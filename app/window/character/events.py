@@ -270,6 +270,7 @@ class Events(QObject):
             vertices = work.pose()
             if vertices is not None:
                 work.heating.want(work.frame, vertices)
+            work.refresh()
 
     def go_to_problem(self, which: str) -> None:
         """Go to the worst problem, the next or the one before."""

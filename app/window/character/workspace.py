@@ -313,6 +313,8 @@ class CharacterWorkspace(Workspace):
             self.warnings.setVisible(False)
             return
         checks.keep_up()
+        if self.mesh.bar.heat == "sunk":
+            checks.meet_background()
         self.warnings.setVisible(True)
         self.warnings.show_check(checks.check if checks.fresh else None, measuring=checks.measuring, at=checks.at)
 

@@ -8,9 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from imitation import InputError
-from imitation.geometry import Camera
 from imitation.geometry.measures import edge_stretch, unique_edges
-from imitation.geometry.penetration import behind_surface, below_ground
+from imitation.geometry.penetration import below_ground
 from imitation.geometry.stretch import VertexStretch
 
 SQUARE = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [5, 5, 5]])
@@ -50,14 +49,6 @@ def test_below_the_nearest_step() -> None:
     assert below_ground(vertices, [[0, 0, 0]]) == pytest.approx([0.2, 0, 0])
     assert below_ground(vertices, [[0, 0, 0], [10, 0, 1.0]]) == pytest.approx([0.2, 0, 0.1])
     assert below_ground(vertices[:, [2, 0, 1]], [[0, 0, 0]], (2.0, 0, 0)) == pytest.approx([0.2, 0, 0])
+    assert below_ground(vertices, [[0, 0, 0], [10, 0, 1.0]], reach=0.5) == pytest.approx([0.2, 0, 0])
     with pytest.raises(InputError, match="one point"):
         below_ground(vertices, np.zeros((0, 3)))
-
-
-def test_behind_what_the_camera_sees() -> None:
-    """A vertex a little behind the wall sticks in it, one far behind is hidden, one before it is free."""
-    camera = Camera([[100.0, 0, 50], [0, 100, 50], [0, 0, 1]], np.eye(3), np.zeros(3))
-    depth = np.full((101, 101), 5.0, np.float32)
-    depth[:, :50] = np.nan
-    vertices = np.array([[0.1, 0, 5.2], [0.1, 0, 8.0], [0.1, 0, 4.0], [-1.0, 0, 5.2], [40, 0, 5.2], [0, 0, -1.0]])
-    assert behind_surface(vertices, camera, depth, reach=0.5) == pytest.approx([0.2, 0, 0, 0, 0, 0], abs=1e-6)
