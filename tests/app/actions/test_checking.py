@@ -68,7 +68,7 @@ def test_a_sunken_pose_is_below_the_ground(session: Session) -> None:
     world = session.result(session.stages.world)
     placed = [each for track in session.document.tracks for each in session.result(session.stages.contacts(track.id))]
     level = float(np.median([each.place[2] for each in placed]))
-    standing = vertices + [0, 0, level - vertices[:, 2].min()]
+    standing = np.add(vertices, [0, 0, level - vertices[:, 2].min()])
     height = float(np.ptp(vertices[:, 2]))
     assert checking.sunk_in_frame(session, world, FRAME, standing).max() == pytest.approx(0.0, abs=1e-9)
     sunk = checking.sunk_in_frame(session, world, FRAME, standing - [0, 0, 0.5 * height])
