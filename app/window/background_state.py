@@ -18,7 +18,7 @@ FLAT = {
 
 @dataclass(frozen=True)
 class BackgroundState:
-    """State for the list of steps, a few words, one sentence, and the command that helps: measure, stop or none."""
+    """State for the list of steps, a few words, one sentence, and the command that helps: measure, stop, contacts."""
 
     state: str
     text: str
@@ -49,7 +49,9 @@ def background_state(project: Project) -> BackgroundState:
         if project.state(stages.world) == "fresh":
             maps = project.result(depth)
             count = f"{len(maps)} key frames" if maps is not None else "key frames"
-            return BackgroundState("done", f"measured, {count}", f"Measured in {count}.", "")
+            document = project.document
+            offer = document.world.ground == "local" and any(track.contacts for track in document.tracks)
+            return BackgroundState("done", f"measured, {count}", f"Measured in {count}.", "contacts" if offer else "")
         return BackgroundState("stale", "the ground is missing", "The ground has to be laid again.")
     if state == "failed":
         reason = project.session.runner.why_failed(depth) or "It could not be measured."

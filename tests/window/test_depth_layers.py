@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 
 from app.actions.session import Session
-from app.model.edits import scene
+from app.model.edits import contacts, scene
 from app.stages.results import Masks
 from app.window import settings
 from app.window.shell import Shell
@@ -298,5 +298,36 @@ def test_a_new_contact_is_marked_by_dragging_it_onto_the_surface(measured: Shell
     assert project.session.history.undo_label == f"Mark contact of {mark.title}, frame 4"
     (contact,) = [each for each in project.document.track(mark.name).contacts if 4 in each.span]
     assert contact.place is not None
+    project.cancel_work()
+    wait_for(lambda: not project.progress)
+
+
+def test_contacts_are_put_onto_the_measured_background(measured: Shell) -> None:
+    """Once it is measured the list of steps offers it: one edit; the ground panel shows the choice, and undoes it."""
+    track, frame, place = anchored(measured)
+    project = measured.project
+    for contact in track.contacts:
+        project.edit(contacts.place_contact, track.id, contact.span.first, None)
+    go(measured, frame)
+    row = next(row for row in measured.video.steps._rows if row[1].text() == "Background")
+    QTest.mouseClick(row[3], LEFT)
+    assert project.document.world.ground == "background"
+    assert project.session.history.undo_label == "Put contacts onto the measured background"
+    wait_for(lambda: not row[3].isVisible() and not project.progress)
+    project.start("Placing contacts", project.session.stages.contacts(track.id))
+    wait_for(lambda: not project.progress, 60)
+    project.select_track(track.id)
+    settle()
+    assert "the measured background" in measured.video.inspector.contact_info.text.text()
+    (found, *_) = project.result(project.session.stages.contacts(track.id))
+    assert abs(found.place[2]) < 0.01, "on the flat ground of the world that was filmed"
+    assert np.linalg.norm(found.place - true_ground(place, frame)) < 0.3, "where the paw is, over its many frames"
+    QTest.keyClick(measured, Qt.Key.Key_B)
+    settle()
+    local, chosen = measured.video.scene.grounds["local"], measured.video.scene.grounds["background"]
+    assert chosen.isChecked()
+    measured.video.scene.ensureWidgetVisible(local)
+    QTest.mouseClick(local, LEFT)
+    assert project.document.world.ground == "local"
     project.cancel_work()
     wait_for(lambda: not project.progress)

@@ -17,6 +17,11 @@ KINDS: dict[str, tuple[str, str]] = {
     "confidence": ("Confidence", "How many other key frames agree with the depth"),
     "plate": ("Clean plate", "The frame without its subject"),
 }
+ACTIONS = {
+    "measure": ("Measure the background", "run", "Its depth, in key frames; it takes a while and can be stopped"),
+    "stop": ("Stop", "cancel", "Stop measuring"),
+    "contacts": ("Put contacts on it", "contact", "Contacts lie where their points meet the measured surface"),
+}
 OPACITY = NumberRange(5, 100, 1, 0, "%", 80)
 
 
@@ -104,6 +109,8 @@ class BackgroundBar(QFrame):
         self.action.setVisible(bool(state.action))
         if state.action != self._command:
             self._command = state.action
-            self.action.setText({"measure": "Measure the background", "stop": "Stop"}.get(state.action, ""))
-            self.action.setIcon(icons.icon("cancel" if state.action == "stop" else "run", "text", "text"))
+            text, icon, words = ACTIONS.get(state.action, ("", "run", ""))
+            self.action.setText(text)
+            self.action.setToolTip(words)
+            self.action.setIcon(icons.icon(icon, "text", "text"))
             self.action.setIconSize(QSize(16, 16))

@@ -17,6 +17,7 @@ from app.window.canvas.backdrop import Backdrop, Scale
 from app.window.canvas.gestures import DragGesture
 from app.window.newest_call import NewestCall
 from app.window.project import Project
+from app.window.video import ground_edits
 from app.window.video.background_bar import KINDS, BackgroundBar
 
 if TYPE_CHECKING:
@@ -172,9 +173,12 @@ class BackgroundLayers(QObject):
             self.ready.emit()
 
     def ask(self, command: str) -> None:
-        """Begin to measure, or stop."""
+        """Begin to measure, stop, or put contacts onto what was measured."""
         if self.project is not None:
-            {"measure": measure, "stop": stop}[command](self.project)
+            if command == "contacts":
+                ground_edits.choose(self.project, "background")
+            else:
+                {"measure": measure, "stop": stop}[command](self.project)
 
     # the line of the wipe ----------------------------------------------------------------------------------------
 

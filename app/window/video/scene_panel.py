@@ -54,7 +54,7 @@ class ScenePanel(ScrollColumn):
             (
                 "background",
                 "The measured background",
-                "Each contact lies where its point meets the measured depth, which is measured first where it is missing.",
+                "Each contact lies where its point meets the measured depth; it is measured first where it is missing.",
             ),
             ("plane", "One ground plane", "One level ground for all contacts."),
             ("depth", "Constant depth", "No ground: the subject stays equally far from the camera."),

@@ -34,7 +34,11 @@ ICONS = {
 }
 
 
-ACTIONS = {"measure": ("run", "Measure the background"), "stop": ("cancel", "Stop measuring the background")}
+ACTIONS = {
+    "measure": ("run", "Measure the background"),
+    "stop": ("cancel", "Stop measuring the background"),
+    "contacts": ("contact", "Put contacts onto the measured background"),
+}
 
 
 def steps(project: Project) -> list[Step]:
