@@ -26,6 +26,7 @@ from app.model.edits import scene  # noqa: E402
 from app.window.application import make_application  # noqa: E402
 from app.window.shell import Shell  # noqa: E402
 from app.window.video.scene_picking import seen_points  # noqa: E402
+from tools.background_pictures import take_background, take_render  # noqa: E402
 from tools.performance_pictures import take_performance  # noqa: E402
 
 TARGET = ROOT / "docs" / "screenshots"
@@ -86,6 +87,8 @@ def main() -> None:
         shell.open_session(Session.open(place))
         camera.live(20, lambda: not shell.video.canvas.picture.isNull())
         _video(shell, camera)
+        take_background(shell, camera)
+        take_render(shell, camera)
         _character(shell, camera)
         if shell.project is not None:
             shell.project.session.history.mark_saved()

@@ -51,7 +51,7 @@ def background_state(project: Project) -> BackgroundState:
             count = f"{len(maps)} key frames" if maps is not None else "key frames"
             document = project.document
             offer = document.world.ground == "local" and any(track.contacts for track in document.tracks)
-            return BackgroundState("done", f"measured, {count}", f"Measured in {count}.", "contacts" if offer else "")
+            return BackgroundState("done", count, f"Measured in {count}.", "contacts" if offer else "")
         return BackgroundState("stale", "the ground is missing", "The ground has to be laid again.")
     if state == "failed":
         reason = project.session.runner.why_failed(depth) or "It could not be measured."
