@@ -133,5 +133,6 @@ class Pages(QStackedWidget):
 
 
 def first_workspace(document: Document) -> str:
-    """Name the workspace that a project is opened in."""
-    return "video"
+    """Name the workspace that a project is opened in: where there are captured takes and no film, theirs."""
+    captured = bool(document.sequences) and document.clip is None and not document.characters
+    return "performance" if captured else "video"

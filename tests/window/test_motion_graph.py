@@ -360,9 +360,8 @@ def test_choices_of_the_performance(hands: PerformingHands) -> None:
     assert state.document.performance.length == frames + 1
     wait_for(lambda: state.paths and (len(state.paths[0]) == frames + 1 or state.paths[0].note), 30)
     settle(30)
-    assert (
-        str(state.frame_count) in options.frames.text() or state.performance.note in hands.page.composed.summary.text()
-    )
+    assert options.note.text() == state.performance.note
+    assert (state.frame_count == frames + 1) == (not state.performance.note)
 
 
 def test_alternatives_are_a_click_away(hands: PerformingHands) -> None:
@@ -458,6 +457,14 @@ def test_every_control_says_what_it_is(hands: PerformingHands) -> None:
         if each.isVisibleTo(hands.shell) and not each.text():
             assert each.toolTip(), each
             assert each.accessibleName(), each.toolTip()
+
+
+def test_a_project_of_takes_opens_here(analysed: Path, tmp_path: Path, open_shell: Callable[[Session], Shell]) -> None:
+    """Where there is neither film nor character, the Motion graph is what one sees first."""
+    copy = tmp_path / analysed.name
+    shutil.copytree(analysed, copy)
+    shell = open_shell(Session.open(copy))
+    assert shell.pages.currentWidget() is shell.performance
 
 
 def test_an_empty_project_invites(open_shell: Callable[[Session], Shell]) -> None:

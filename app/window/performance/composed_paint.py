@@ -15,6 +15,8 @@ from app.window.timeline.lanes import RULER
 
 Thumbnail = Callable[[str, int], QImage | None]
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+LOOPED = 92.0
+"""Pixels that the words of the way back to the start take, left of its bar."""
 STANDS_OUT = 1.2
 """A step of more than so many times the largest within the motions is seen."""
 
@@ -161,7 +163,8 @@ def paint_costs(painter: QPainter, shown: Composed, axis: Axis, top: int, height
     painter.drawLine(QPointF(axis.left, base), QPointF(axis.x(max(shown.count, 1)), base))
     cuts = [joint for joint in shown.joints if joint.kind != "wrap"]
     dear = max([joint.cost for joint in cuts], default=0.0)
-    ends = [axis.x(joint.position) for joint in cuts[1:]] + [float(axis.width)]
+    ends = [axis.x(joint.position) - (LOOPED if joint.kind == "loop" else 0) for joint in cuts[1:]]
+    ends.append(float(axis.width))
     for joint, edge in zip(cuts, ends, strict=False):
         x = axis.x(joint.position) - (14 if joint.kind == "loop" else 0)
         tall = 4 + (height - 18) * min(joint.cost / dear, 1.0) if dear > 0 else 4
@@ -179,8 +182,8 @@ def paint_costs(painter: QPainter, shown: Composed, axis: Axis, top: int, height
 def _paint_words(painter: QPainter, joint: Joint, left: float, right: float, top: int, height: int) -> None:
     look = theme.active()
     if joint.kind == "loop":
-        left -= 74
-    room = right - left if joint.kind != "loop" else 58.0
+        left -= LOOPED - 14
+    room = right - left if joint.kind != "loop" else LOOPED - 32
     for text, face, token, y in (
         (f"{joint.cost:.2f}", fonts.font(fonts.CAPTION, QFont.Weight.DemiBold), "text", top + 3.0),
         (steps(joint), fonts.font(fonts.LANE), "text3", top + 19.0),

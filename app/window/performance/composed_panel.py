@@ -47,9 +47,9 @@ class GapNote(QFrame):
         self.use.setVisible(mu is not None)
         self.use.setText(f"Use {mu:.4g}" if mu is not None else "")
         look = theme.active()
-        self.setStyleSheet(
-            f"#gapNote {{ background: {look.panel}; border: 1px solid {look.err}; border-radius: 5px; }}"
-        )
+        style = f"#gapNote {{ background: {look.panel}; border: 1px solid {look.err}; border-radius: 5px; }}"
+        if style != self.styleSheet():
+            self.setStyleSheet(style)
 
 
 class ComposedPanel(Panel):
@@ -130,7 +130,9 @@ class ComposedPanel(Panel):
         self.view.show_choice(self.editing.key, state.cut)
         self.options.refresh()
         self.summary.setText(self._words())
-        self.summary.setStyleSheet(f"color: {theme.active().err};" if state.problem and state.gap is None else "")
+        style = f"color: {theme.active().err};" if state.problem and state.gap is None else ""
+        if style != self.summary.styleSheet():
+            self.summary.setStyleSheet(style)
         self.show_place()
         self._place()
 
@@ -144,8 +146,8 @@ class ComposedPanel(Panel):
         many = f"{len(keys)} key motion{'s' if len(keys) > 1 else ''}"
         if performance is None:
             return f"{many}, searching"
-        note = f" \N{MIDDLE DOT} {performance.note}" if performance.note else ""
-        return f"{many}, worst transition {performance.cost:.2f}{note}"
+        near = f", {len(performance)} frames is the nearest length" if performance.note else ""
+        return f"{many}, worst transition {performance.cost:.2f}{near}"
 
     def show_place(self, *_: object) -> None:
         """Move the playhead and the numbers."""

@@ -146,6 +146,12 @@ class ComposedView(QWidget):
         self.show_insertion(-1)
         return was
 
+    def changeEvent(self, event: QEvent) -> None:
+        """Take another look."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.StyleChange:
+            self.refresh()
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Fit the axis to the width."""
         self.axis = self.axis.sized(self.width(), self.shown.count + 1)

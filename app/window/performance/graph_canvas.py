@@ -119,6 +119,12 @@ class GraphCanvas(QWidget):
         self.unsetCursor()
         return True
 
+    def changeEvent(self, event: QEvent) -> None:
+        """Take another look."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.StyleChange:
+            self.refresh()
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Keep the whole graph in sight until the user has zoomed."""
         if self._fitting:

@@ -127,16 +127,18 @@ def paint_costs(painter: QPainter, picture: Picture, lens: Lens) -> None:
         curve = bow(start, goal, lens.size / 2)
         text = f"{edge.cost:.2f}"
         plate = QRectF(0, 0, metrics.horizontalAdvance(text) + 10, metrics.height() + 2)
-        for share in (*SHARES, SHARES[0]):
-            plate.moveCenter(QPointF(*on_bow(*curve, share)))
-            if not any(plate.intersects(room) for room in taken):
-                break
-        taken.append(QRectF(plate))
+        places = [plate.translated(QPointF(*on_bow(*curve, share)) - plate.center()) for share in SHARES]
+        plate = min(places, key=lambda place: sum(_area(place.intersected(room)) for room in taken))
+        taken.append(plate)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.colour("canvas", 235))
         painter.drawRoundedRect(plate, 4, 4)
         painter.setPen(look.colour("accent"))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+
+
+def _area(room: QRectF) -> float:
+    return room.width() * room.height() if room.isValid() else 0.0
 
 
 def _rooms(mark: NodeMark, lens: Lens) -> tuple[QRectF, QRectF]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.model.edits import performance as edits
-from app.window.controls import Chooser, NumberField, NumberRange, label, toggle
+from app.window import theme
+from app.window.controls import Chooser, Elided, NumberField, NumberRange, toggle
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.state import PerformanceState
 
@@ -26,7 +27,9 @@ class OptionsBar(QWidget):
         self._length(row)
         row.addSpacing(10)
         self._smoothing(row)
-        row.addStretch(1)
+        row.addSpacing(10)
+        self.note = Elided("", "caption")
+        row.addWidget(self.note, 1)
         self.refresh()
 
     def _paths(self, row: QHBoxLayout) -> None:
@@ -65,8 +68,7 @@ class OptionsBar(QWidget):
         self.blend_seconds.changed.connect(lambda value: self._smooth(seconds=value))
         self.hard = toggle("hard_cut", "Hard cut", self._hard)
         self.hard.setToolTip("Leave the chosen cut as it is")
-        self.cut_name = label("", "caption")
-        for each in (self.align, self.blend, self.blend_seconds, self.hard, self.cut_name):
+        for each in (self.align, self.blend, self.blend_seconds, self.hard):
             row.addWidget(each)
 
     # showing -----------------------------------------------------------------------------------------------------
@@ -88,6 +90,10 @@ class OptionsBar(QWidget):
         self.blend.setEnabled(choice.align)
         self.blend_seconds.set_value(choice.blend_seconds)
         self.blend_seconds.setEnabled(choice.align and choice.blend)
+        self.note.setText(state.performance.note if state.performance is not None else "")
+        style = f"color: {theme.active().warn};"
+        if style != self.note.styleSheet():
+            self.note.setStyleSheet(style)
         self._show_cut()
         self._show_paths()
         self._showing = False

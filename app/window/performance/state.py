@@ -98,9 +98,11 @@ class PerformanceState(QObject):
             self.select_sequence(ids[-1] if ids else "")
         if [sequence.id for sequence in before.sequences] != ids and self.graph is not None:
             self._forget()
-        if before.sequences != after.sequences or before.performance != after.performance:
+        own = before.sequences is not after.sequences or before.performance is not after.performance
+        if own:
             self.take_results()
-        self.document_changed.emit(before, after)
+        if own or before.characters is not after.characters:
+            self.document_changed.emit(before, after)
 
     def _finished(self, stage: Stage) -> None:
         if stage.name.split("/")[0] in RESULTS:
