@@ -192,7 +192,12 @@ class Session:
         self.history.mark_saved()
 
     def autosave(self) -> bool:
-        """Write unsaved work beside the saved project; False when there is none, and none is left to recover then."""
+        """Write unsaved work beside the saved project; False when there is none, and none is left to recover then.
+
+        Where another program has the project open nothing is written: what lies there is that one's.
+        """
+        if not self.alone:
+            return False
         if not self.history.modified:
             self.forget_autosave()
             return False
@@ -207,8 +212,9 @@ class Session:
 
     def forget_autosave(self) -> None:
         """Leave nothing to recover: there is no unsaved work, or the person chose to throw it away."""
-        with explained(self.folder.path):
-            self.folder.autosave_file.unlink(missing_ok=True)
+        if self.alone:
+            with explained(self.folder.path):
+                self.folder.autosave_file.unlink(missing_ok=True)
 
     def look_again(self) -> bool:
         """Whether no other program has the project open now; one that had it may have closed it since."""

@@ -59,7 +59,8 @@ class Care(QObject):
                 ("Save as…", self.shell.files.save_as),
                 ("Go on", lambda: None),
             )
-        self._offer(recovery.pending(session))
+        if not session.history.modified:  # else it was recovered a moment ago
+            self._offer(recovery.pending(session))
         self.look_for_media()
 
     def detach(self) -> None:
@@ -106,7 +107,7 @@ class Care(QObject):
     def autosave(self) -> None:
         """Write unsaved work beside the project; where that is not possible, say so once."""
         project = self.shell.project
-        if project is None or not project.session.alone:
+        if project is None:
             return
         try:
             project.session.autosave()

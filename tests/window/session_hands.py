@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QComboBox, QDialogButtonBox, QFileDialog, QLineEdit
+from PySide6.QtWidgets import QApplication, QComboBox, QDialog, QFileDialog, QLineEdit, QMessageBox
 
 from app.formats import open_video, write_video
 from app.window.canvas.hits import GRAB
@@ -70,21 +70,22 @@ class Hands:
         end = time.monotonic() + 30
 
         def type_() -> None:
+            waiting.start(50)  # goes on while a question of the dialog's own keeps this call
             dialog = QApplication.activeModalWidget()
-            if isinstance(dialog, QFileDialog):
+            if isinstance(dialog, QMessageBox) or (isinstance(dialog, QDialog) and time.monotonic() > end):
+                answered.clear()  # whatever is asked instead, nobody waits for it for ever
+                dialog.reject()
+            elif isinstance(dialog, QFileDialog) and not typing:
+                typing.append(True)
                 field = dialog.findChild(QLineEdit, "fileNameEdit")
+                field.setCompleter(None)  # a list of known names would take the Enter key
                 field.selectAll()
                 QTest.keyClicks(field, str(path))
-                QTest.keyClick(field, Qt.Key.Key_Return)
                 answered.append(dialog.windowTitle())
-                if dialog.isVisible():  # the list of known names took the key: the button is left
-                    accept = dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Save)
-                    QTest.mouseClick(accept, LEFT)
-            if dialog is not None and dialog.isVisible() and time.monotonic() > end:
-                dialog.close()
-            elif dialog is None or dialog.isVisible():
-                waiting.start(50)
+                QTest.keyClick(field, Qt.Key.Key_Return)
+                typing.clear()
 
+        typing: list[bool] = []
         waiting = QTimer()
         waiting.setSingleShot(True)
         waiting.timeout.connect(type_)

@@ -113,6 +113,7 @@ def test_a_project_without_a_place_is_offered_again(open_shell: Callable[[Sessio
     assert shell.project.session.folder.path == place
     assert shell.project.document.name == "first steps"
     assert "not saved yet" in shell.bar.state.text()
+    assert not shell.care.notices.open
     shell.close()
     assert not place.exists(), "closed by the person, who did not want to save"
 
@@ -122,8 +123,12 @@ def test_a_project_open_elsewhere_is_told(open_shell: Callable[[Session], Shell]
     second = open_shell(Session.open(session.folder.path))
     assert "open in another window" in second.care.notices.open["alone"].sentence.text()
     second.project.edit(scene.rename, "here too")
+    session.apply(scene.rename(session.document, "there"))
+    session.autosave()
+    autosaved = session.folder.autosave_file.read_bytes()
     second.files.autosave()
-    assert not session.folder.autosave_file.exists()
+    second.close()
+    assert session.folder.autosave_file.read_bytes() == autosaved
     session.close()
 
 

@@ -139,6 +139,9 @@ def test_a_project_open_elsewhere_offers_nothing(tmp_path: Path) -> None:
             assert first.alone
             assert not second.alone
             assert not recovery.pending(second)
+            second.apply(scene.rename(second.document, "there"))
+            assert not second.autosave()
+            second.forget_autosave()
         assert first.folder.autosave_file.exists()
     assert not in_use(tmp_path / "film.motionwright")
 
