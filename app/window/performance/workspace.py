@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtCore import QEvent, QPoint, Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QSplitter, QVBoxLayout, QWidget
 
@@ -96,6 +96,13 @@ class PerformanceWorkspace(Workspace):
         self.state.hint.connect(self.hint)
         self.thumbnails.ready.connect(self._drawn)
 
+    def changeEvent(self, event: QEvent) -> None:
+        """What is drawn once and kept is drawn anew for another look."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.StyleChange:
+            self.strip.view.refresh()
+            self.library.refresh()
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         """In a low window lanes are lower, and the source is shown when it is asked for."""
         super().resizeEvent(event)
@@ -119,6 +126,8 @@ class PerformanceWorkspace(Workspace):
         """Let go of the project."""
         self.library.detach()
         self.state.attach(None)
+        self.preview.refresh()
+        self.strip.refresh()
         self.trial.drop()
         self.places.forget()
         self.editing.key = self.editing.replacing = -1
@@ -157,6 +166,7 @@ class PerformanceWorkspace(Workspace):
     def refresh(self) -> None:
         """Show the project as it is."""
         self.graph.refresh()
+        self.composed.refresh()
         self._show_parts()
         self.hint.emit(self._hint())
 
