@@ -46,6 +46,7 @@ class Standing:
     grain : grey levels of noise over them; None: as much as the film has.
     light_turn, light_lift : degrees by which the main light is turned, seen from above clockwise, and raised.
     brightness, shadow_strength : factors on the lights and on how dark shadows are.
+    warmth : tone of the lights, -1 blue to 1 amber.
     """
 
     occlusion: bool = False
@@ -58,6 +59,7 @@ class Standing:
     light_lift: float = 0.0
     brightness: float = 1.0
     shadow_strength: float = 1.0
+    warmth: float = 0.0
 
     @property
     def needs_depth(self) -> bool:
@@ -205,7 +207,7 @@ def _look(standing: Standing, world: World, film: Any, background: Background | 
         look = match_look(film[middle.frame], middle.depth, middle.camera, up=world.normal)
     return adjusted_look(
         look, world.cameras[0], world.normal, turn=standing.light_turn, lift=standing.light_lift,
-        brightness=standing.brightness, shadow=standing.shadow_strength,
+        brightness=standing.brightness, shadow=standing.shadow_strength, warmth=standing.warmth,
     )  # fmt: skip
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import attrs
 
+from app.actions.background_views import BackgroundViews, Kind
 from app.actions.compositing import Composition, Standing
 from app.actions.films import comparison_frame, film_frame
 from app.actions.moving import animated
@@ -54,6 +55,7 @@ class Previewer:
     def __init__(self) -> None:
         self._background: tuple[tuple[str, ...], Remembered] | None = None
         self._scene: tuple[Any, Composition] | None = None
+        self._views: tuple[tuple[str, ...], BackgroundViews] | None = None
 
     def picture(self, session: Session, order: FilmOrder, frame: int) -> Picture:
         """One frame; for pictures with alpha the characters and their shadows over a chequered ground.
@@ -69,6 +71,14 @@ class Previewer:
         """One frame of a comparison, with those of the variants that are computed."""
         there = [each for each in variants if session.stages.comparison(character_id, each) in session.cache]
         return comparison_frame(session, character_id, frame, there)
+
+    def background(self, session: Session, kind: Kind, frame: int) -> Picture:
+        """One frame of the plate, or of the depth in false colour."""
+        stages = session.stages
+        key = (stages.depth.key, stages.world.key, stages.masks.key)
+        if self._views is None or self._views[0] != key:
+            self._views = (key, BackgroundViews(session))
+        return self._views[1].view(kind, frame).picture
 
     def _composition(self, session: Session, order: FilmOrder) -> Composition:
         keys = tuple(stage.key for stage in order.stages(session))

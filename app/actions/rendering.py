@@ -91,6 +91,20 @@ def write_motion(session: Session, character_id: str, target: Path, form: Form |
     return target
 
 
+def write_background(session: Session, kind: str, target: Path, progress: Progress) -> Path:
+    """Measure the background where it is missing, and write of it a film of plates, a mesh or depth maps."""
+    from app.actions.backgrounds import plate_film, write_background_mesh, write_depth
+
+    rest = computed(session, "Measuring the background", (session.stages.depth, session.stages.world), progress)
+    if kind == "plate":
+        plate_film(session, target, progress=rest)
+    elif kind == "mesh":
+        write_background_mesh(session, target)
+    else:
+        write_depth(session, target)
+    return target
+
+
 def computed(session: Session, label: str, stages: tuple[Stage, ...], progress: Progress) -> Progress:
     """Compute what is missing; gives the progress of what comes after. ``progress`` may cancel it.
 

@@ -15,6 +15,8 @@ Picture = NDArray[np.uint8]
 _LUMA = np.array([0.2126, 0.7152, 0.0722])
 _TYPICAL = 0.20
 """Linear reflectance of an outdoor scene taken as a whole."""
+_AMBER = 0.35
+"""How much more red and less blue the warmest light has."""
 _TELLING = 0.03
 """Share of the plate's variance that its normals must explain for a light direction to be believed."""
 
@@ -83,7 +85,7 @@ def match_look(
 
 def adjusted_look(
     look: Look, camera: Camera, up: ArrayLike = UP, *, turn: float = 0.0, lift: float = 0.0, brightness: float = 1.0,
-    shadow: float = 1.0,
+    shadow: float = 1.0, warmth: float = 0.0,
 ) -> Look:  # fmt: skip
     """Turn the lights of a look by hand; its main light stands still from then on.
 
@@ -92,9 +94,12 @@ def adjusted_look(
     camera : of the first frame, by which a look without a direction takes its own.
     turn, lift : degrees clockwise seen from above, and upwards; the light stays 5 to 90 degrees above the ground.
     brightness, shadow : factors on all lights, and on how dark shadows are.
+    warmth : -1 blue to 1 amber; the lights stay as bright.
     """
     if not (np.isfinite([turn, lift, brightness, shadow]).all() and brightness >= 0 and shadow >= 0):
         raise InputError("Lights need finite angles and factors that are not negative.")
+    if not abs(warmth) <= 1:
+        raise InputError(f"The warmth of the light is between -1 and 1, not {warmth}.")
     above = np.asarray(up, np.float64) / np.linalg.norm(np.asarray(up, np.float64))
     key = key_direction(look, camera, above)
     height = np.arcsin(np.clip(key @ above, -1, 1))
@@ -108,8 +113,11 @@ def adjusted_look(
         height = np.clip(height + np.radians(lift), np.radians(5), np.radians(90))
     turned = np.sin(height) * above + np.cos(height) * level
 
+    tint = np.array([1 + _AMBER * warmth, 1.0, 1 - _AMBER * warmth])
+    tint *= brightness / float(tint @ _LUMA) if warmth else brightness
+
     def brighter(rgb: tuple[float, float, float]) -> tuple[float, float, float]:
-        return rgb[0] * brightness, rgb[1] * brightness, rgb[2] * brightness
+        return float(rgb[0] * tint[0]), float(rgb[1] * tint[1]), float(rgb[2] * tint[2])
 
     return attrs.evolve(
         look,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import attrs
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -141,6 +142,21 @@ def test_fallbacks_are_offered_in_the_list_of_steps(flat: Shell, kind: str) -> N
     assert not steps.offer.isVisible()
     flat.project.cancel_work()
     wait_for(lambda: not flat.project.progress)
+
+
+def test_a_plane_through_points_of_the_scene_is_offered(flat: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a flat scene has recovered points, they can be chosen: the button takes the Ground tool."""
+    project = flat.project
+    path = attrs.evolve(project.result(project.session.stages.cameras), verdict="planar", points=np.zeros((5, 3)))
+    result = project.result
+    monkeypatch.setattr(project, "result", lambda stage: path if stage.name == "cameras" else result(stage))
+    flat.video.refresh()
+    settle()
+    fallbacks = flat.video.steps.fallbacks
+    assert set(fallbacks) == {"points", "plane", "depth"}
+    QTest.mouseClick(fallbacks["points"], LEFT)
+    assert flat.video.tool == "ground"
+    assert project.document.world.ground == "local", "nothing is decided before points are chosen"
 
 
 def test_cameras_that_failed_may_be_taken_as_still(flat: Shell, monkeypatch: pytest.MonkeyPatch) -> None:

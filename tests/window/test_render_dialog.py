@@ -30,7 +30,7 @@ def usual_choices(qapp: object, tmp_path: Path) -> None:
     """Nothing is remembered of other tests; files go to a folder of the test."""
     kept = settings.settings()
     kept.remove("render")
-    for name in ("film", "comparison", "motion"):
+    for name in ("film", "comparison", "motion", "background"):
         kept.setValue(f"render/{name}_folder", str(tmp_path))
 
 
@@ -258,6 +258,29 @@ def test_a_motion_is_exported_as_a_job(shell: Shell, tmp_path: Path, form: str) 
         assert len(list((tmp_path / "small motion").glob("*.ply"))) == 24
     else:
         assert (tmp_path / "small motion.glb").read_bytes()[:4] == b"glTF"
+
+
+@pytest.mark.parametrize(("kind", "name"), [("Clean plates (mp4)", ".mp4"), ("Mesh (GLB)", ".glb"), ("Depth maps", "")])
+def test_the_background_is_written(measured: Shell, tmp_path: Path, kind: str, name: str) -> None:
+    """Fourth page: plates as a film, the mesh, depth maps; a frame of them is shown."""
+    dialog = opened(measured)
+    QTest.mouseClick(dialog.tabs["background"], LEFT)
+    page = dialog.background
+    page.kind.setFocus()
+    while not page.kind.currentText().startswith(kind):
+        QTest.keyClick(page.kind, Qt.Key.Key_Down)
+    made(dialog, lambda shown, *_: shown == ("plate" if name == ".mp4" else "depth"))
+    QTest.mouseClick(page.target.write, LEFT)
+    assert "is written" in done(dialog)
+    target = tmp_path / f"small background{name}"
+    if name == ".mp4":
+        frames = open_video(target)
+        assert len(frames) == 24
+        frames.close()
+    elif name == ".glb":
+        assert target.read_bytes()[:4] == b"glTF"
+    else:
+        assert (target / "depth.npz").is_file()
 
 
 def test_the_quick_export_is_a_job_too(shell: Shell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -33,6 +33,7 @@ class FilmChoices:
     light_turn: float = 0.0
     light_lift: float = 0.0
     brightness: float = 100.0
+    warmth: float = 0.0
     shadow_strength: float = 100.0
     blurred: bool = True
     shutter: float = 100.0 * SHUTTER
@@ -53,6 +54,7 @@ class FilmChoices:
             light_turn=self.light_turn,
             light_lift=self.light_lift,
             brightness=self.brightness / 100,
+            warmth=self.warmth / 100,
             shadow_strength=self.shadow_strength / 100,
         )
         view: View = "video" if self.alpha else self.view

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QButtonGroup, QDialog, QHBoxLayout, QStackedWidget
 
 from app.window import icons, settings
 from app.window.project import Project
+from app.window.render.background_page import BackgroundPage
 from app.window.render.film_page import FilmPage
 from app.window.render.motion_page import ComparePage, MotionPage
 from app.window.render.page import Page
@@ -17,7 +18,12 @@ from app.window.render.page import Page
 if TYPE_CHECKING:
     from app.window.shell import Shell
 
-PAGES = (("film", "Film", "render"), ("compare", "Comparison", "wipe"), ("motion", "Motion", "export"))
+PAGES = (
+    ("film", "Film", "render"),
+    ("compare", "Comparison", "wipe"),
+    ("motion", "Motion", "export"),
+    ("background", "Background", "background"),
+)
 SOON = 40
 
 
@@ -40,11 +46,13 @@ class RenderDialog(QDialog):
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         self.film, self.compare, self.motion = FilmPage(project), ComparePage(project), MotionPage(project)
+        self.background = BackgroundPage(project)
+        self._pages: tuple[Page, ...] = (self.film, self.compare, self.motion, self.background)
         self.stack = QStackedWidget()
         self.tabs: dict[str, QToolButton] = {}
         column.addLayout(self._tabs())
         column.addWidget(self.stack, 1)
-        for page in (self.film, self.compare, self.motion):
+        for page in self._pages:
             page.asked.connect(self._asked)
         self._later = QTimer(self)
         self._later.setSingleShot(True)
@@ -66,7 +74,7 @@ class RenderDialog(QDialog):
         row.setContentsMargins(12, 10, 12, 0)
         row.setSpacing(4)
         group = QButtonGroup(self)
-        for page, (name, text, icon) in zip((self.film, self.compare, self.motion), PAGES, strict=True):
+        for page, (name, text, icon) in zip(self._pages, PAGES, strict=True):
             tab = QToolButton()
             tab.setProperty("tab", "true")
             tab.setIcon(icons.icon(icon))
@@ -128,7 +136,7 @@ class RenderDialog(QDialog):
             self.project.work_changed,
         ):
             signal.disconnect(self._soon)
-        for page in (self.film, self.compare, self.motion):
+        for page in self._pages:
             page.close_calls(wait=self._wait)
         event.accept()
 

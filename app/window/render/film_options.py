@@ -29,13 +29,14 @@ NUMBERS: dict[str, tuple[str, NumberRange]] = {
     "light_turn": ("Turn the light", NumberRange(-180, 180, 1, 0, "°", 0)),
     "light_lift": ("Raise the light", NumberRange(-90, 90, 1, 0, "°", 0)),
     "brightness": ("Brightness", NumberRange(20, 300, 1, 0, "%", 100)),
+    "warmth": ("Warmth", NumberRange(-100, 100, 1, 0, "%", 0)),
     "shadow_strength": ("Darkness of shadow", NumberRange(0, 200, 1, 0, "%", 100)),
     "shutter": ("Shutter open", NumberRange(1, 100, 1, 0, "%", 50)),
     "dim": ("Fade the film", NumberRange(0, 100, 1, 0, "%", 0)),
 }
 GROUPS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("In the scene", ("occlusion", "shadow", "plate")),
-    ("Light", ("match_light", "light_turn", "light_lift", "brightness", "shadow_strength")),
+    ("Light", ("match_light", "light_turn", "light_lift", "brightness", "warmth", "shadow_strength")),
     ("Look of the film", ("blurred", "shutter", "grain", "dim", "points")),
 )
 

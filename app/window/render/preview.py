@@ -9,6 +9,7 @@ from PySide6.QtCore import QRectF, Signal
 from PySide6.QtGui import QImage, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
+from app.actions.background_views import Kind
 from app.actions.rendering import FilmOrder
 from app.window import theme
 from app.window.canvas import as_image, fitted, marks
@@ -24,6 +25,11 @@ LACKING = {
         "propagate",
     ),
     "comparison": ("What is not computed yet is left out here: rendering computes it first.", "", ""),
+    "unmeasured": (
+        "The background has not been measured yet: writing measures it first.",
+        "Measure the background",
+        "measure",
+    ),
     "nobody": ("Choose a character to film.", "", ""),
     "background": (
         "Shown without occlusion, shadow, plate and matched light: the background has not been measured yet.",
@@ -138,6 +144,18 @@ class Preview(QWidget):
         self._lack("" if there == variants else "comparison")
         wish = (character, there, frame, stages.animation(character).key, stages.world.key)
         self.show(wish, lambda previewer: previewer.comparison(still, character, there, frame))
+
+    def show_background(self, kind: Kind) -> None:
+        """Show the measured background of the frame in sight."""
+        project = self.project
+        stages, still, frame = project.session.stages, project.session.as_it_is(), project.frame
+        if stages.depth not in still.cache or stages.world not in still.cache:
+            self._lack("unmeasured")
+            self.show_nothing()
+            return
+        self._lack("")
+        wish = (kind, frame, stages.depth.key, stages.world.key, stages.masks.key)
+        self.show(wish, lambda previewer: previewer.background(still, kind, frame))
 
     def show(self, wish: tuple[Any, ...], make: Callable[[Any], Any]) -> None:
         """Make a picture unless it is the one that is shown."""

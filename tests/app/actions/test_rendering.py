@@ -57,7 +57,13 @@ def test_light_and_blur_change_the_preview(solved: Session) -> None:
     plain = previewer.picture(solved, order_of(solved), 5).astype(int)
     again = previewer.picture(solved, order_of(solved), 5)
     assert (plain == again).all()
-    for change in ({"light_turn": 120.0}, {"light_lift": 30.0}, {"brightness": 1.5}, {"shadow_strength": 0.0}):
+    for change in (
+        {"light_turn": 120.0},
+        {"light_lift": 30.0},
+        {"brightness": 1.5},
+        {"warmth": 1.0},
+        {"shadow_strength": 0.0},
+    ):
         other = previewer.picture(solved, order_of(solved, standing=Standing(**change)), 5)
         assert np.abs(other - plain).max() > 12, change
 

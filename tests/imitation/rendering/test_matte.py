@@ -77,6 +77,12 @@ def test_lights_turned_by_hand() -> None:
     raised = adjusted_look(look, camera, lift=15)
     np.testing.assert_allclose(raised.key, [0, -0.5, np.sqrt(0.75)], atol=1e-9)
     assert adjusted_look(look, camera, lift=-80).key[2] == pytest.approx(np.sin(np.radians(5)))
+    warm, luma = adjusted_look(look, camera, warmth=0.8), np.array([0.2126, 0.7152, 0.0722])
+    ratio = np.array(warm.key_light) / np.array(look.key_light)
+    assert ratio[0] > 1.1 > 0.9 > ratio[2], "amber: more red, less blue"
+    assert ratio @ luma == pytest.approx(1.0), "as bright as before"
+    with pytest.raises(InputError, match="between -1 and 1"):
+        adjusted_look(look, camera, warmth=2.0)
     same = adjusted_look(Look(), camera)
     np.testing.assert_allclose(same.key, key_direction(Look(), camera, (0, 0, 1)), atol=1e-12)
     with pytest.raises(InputError, match="finite angles"):
