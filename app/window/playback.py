@@ -46,6 +46,11 @@ class Playback(QObject):
         return self._course is not None
 
     @property
+    def course(self) -> Course | None:
+        """What is run over, None while it stands."""
+        return self._course
+
+    @property
     def speed(self) -> float:
         """How fast it plays, 0 while it stands."""
         return self._course.speed if self._course else 0.0

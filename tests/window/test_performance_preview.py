@@ -17,6 +17,7 @@ from app.actions.performing_playback import ready
 from app.formats.tvm import FrameMesh
 from app.window.performance.player import Dropped, FrameReader, ahead
 from app.window.performance.preview_notes import cut_near
+from app.window.playback import Course
 from app.window.shell import Shell
 from imitation.errors import InputError
 from tests.window.conftest import drag, settle, wait_for
@@ -228,23 +229,23 @@ def test_a_damaged_frame_is_told_once(reader: FrameReader) -> None:
 def test_dropped_frames_are_counted() -> None:
     """Forwards, backwards, round the end, and at double speed, where every second frame is meant to be left out."""
     counted = Dropped()
-    counted.begin()
-    for place in (0, 1, 2, 5, 6, 9, 0):
-        counted.saw(place, 10, 1.0)
-    assert (counted.shown, counted.dropped) == (7, 4)
-    counted.begin()
-    for place in (3, 2, 1, 0, 9, 6):
-        counted.saw(place, 10, -1.0)
-    assert counted.dropped == 2
-    counted.begin()
-    for place in (0, 2, 4, 8):
-        counted.saw(place, 100, 2.0)
-    assert counted.dropped == 1
+
+    def seen(places: tuple[int, ...], course: Course) -> tuple[int, int]:
+        counted.begin()
+        for place in places:
+            counted.saw(place, course)
+        return counted.shown, counted.dropped
+
+    assert seen((0, 1, 2, 2, 5, 6, 9, 0), Course(0, 0, 9, 25.0)) == (7, 4)
+    assert seen((3, 2, 1, 0, 9, 6), Course(3, 0, 9, 25.0, -1.0)) == (6, 2)
+    assert seen((0, 2, 4, 8), Course(0, 0, 99, 25.0, 2.0)) == (4, 1)
+    assert seen((20, 21, 22, 20, 22), Course(20, 20, 22, 25.0)) == (5, 1), "a few frames again and again"
 
 
 def test_what_is_read_ahead() -> None:
-    """A second of what comes next while playing, the neighbours at rest, nothing of an empty source."""
-    assert ahead(8, 10, 1.0, 5.0) == [8, 9, 0, 1, 2]
-    assert ahead(1, 10, -1.0, 5.0) == [1, 0, 9, 8, 7]
-    assert ahead(0, 10, 0.0, 25.0) == [0, 1, 2]
-    assert ahead(0, 0, 1.0, 25.0) == []
+    """A second of what comes next while playing, round the end of what is played; the neighbours at rest."""
+    assert ahead(8, 10, Course(8, 0, 9, 5.0)) == [8, 9, 0, 1, 2]
+    assert ahead(1, 10, Course(1, 0, 9, 5.0, -1.0)) == [1, 0, 9, 8, 7]
+    assert ahead(22, 100, Course(20, 20, 23, 25.0)) == [22, 23, 20, 21]
+    assert ahead(0, 10, None) == [0, 1, 2]
+    assert ahead(0, 0, None) == []

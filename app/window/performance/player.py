@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
 
+from app.window.playback import Course
+
 if TYPE_CHECKING:
     from app.actions.performing_playback import ShownFrame
 
@@ -158,24 +160,31 @@ class Dropped:
         self.shown = self.dropped = 0
         self._last = None
 
-    def saw(self, position: int, count: int, speed: float) -> None:
+    def saw(self, place: int, course: Course) -> None:
         """A frame is on the screen while playing."""
-        if self._last is not None and position != self._last:
-            way = (position - self._last) if speed > 0 else (self._last - position)
-            stride = max(round(abs(speed)), 1)
-            self.dropped += max((way % max(count, 1)) // stride - 1, 0)
-        if position != self._last:
-            self.shown += 1
-        self._last = position
+        if place == self._last:
+            return
+        if self._last is not None:
+            stride = max(round(abs(course.speed)), 1)
+            self.dropped += max(way(course, self._last, place) // stride - 1, 0)
+        self.shown += 1
+        self._last = place
 
 
-def ahead(position: int, count: int, speed: float, fps: float, seconds: float = 1.0) -> list[int]:
+def way(course: Course, start: int, end: int) -> int:
+    """How many frames a run takes from one to another, round the end where it has to."""
+    moved = end - start if course.speed > 0 else start - end
+    return moved % (course.last - course.first + 1)
+
+
+def ahead(place: int, count: int, course: Course | None, seconds: float = 1.0) -> list[int]:
     """The frames that come next, the present one first: while playing round and round, else both neighbours."""
     if count <= 0:
         return []
-    if speed == 0:
-        near = [position, position + 1, position - 1, position + 2, position - 2]
+    if course is None:
+        near = [place, place + 1, place - 1, place + 2, place - 2]
         return [each for each in near if 0 <= each < count]
-    stride = 1 if speed > 0 else -1
-    many = min(count, max(round(seconds * fps * abs(speed)), 4))
-    return [(position + stride * step) % count for step in range(many)]
+    length = course.last - course.first + 1
+    sign = 1 if course.speed > 0 else -1
+    many = min(length, max(round(seconds * course.fps * abs(course.speed)), 4))
+    return [course.first + (place - course.first + sign * step) % length for step in range(many)]

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
 from app.window import icons
 from app.window.controls import Elided, ErrorBar, Panel, icon_button, toggle
 from app.window.lazy_view import LazyView
-from app.window.performance.player import Dropped, FrameReader, ahead
+from app.window.performance.player import Dropped, FrameReader, ahead, way
 from app.window.performance.preview_notes import MODES, Mode, cut_lines, cut_near, paint_lines, place_line
 from app.window.performance.preview_source import Source, front, opener, wanted_source
 from app.window.performance.state import PerformanceState
@@ -205,9 +205,7 @@ class Preview(Panel):
         self._want()
 
     def _want(self) -> None:
-        state = self.state
-        speed = state.playback.speed if state.playback.playing else 0.0
-        wanted = ahead(state.place, self._count, speed, state.fps)
+        wanted = ahead(self.state.place, self._count, self.state.playback.course)
         self.reader.want([*wanted[:1], *self._ghost_places(), *wanted[1:]])
 
     def _arrived(self, position: int) -> None:
@@ -220,12 +218,11 @@ class Preview(Panel):
 
     def _better(self, position: int) -> bool:
         """Whether a frame that comes late is still later than the one in sight, while playing."""
-        speed = self.state.playback.speed
-        if not self.state.playback.playing or self.shown < 0 or not self._count:
+        course = self.state.playback.course
+        if course is None or self.shown < 0:
             return False
-        sign = 1 if speed > 0 else -1
-        way, open_ = (sign * (each - self.shown) % self._count for each in (position, self._due))
-        return 0 < way <= open_ < self._count // 2
+        open_ = way(course, self.shown, self._due)
+        return 0 < way(course, self.shown, position) <= open_ < (course.last - course.first + 1) // 2
 
     def _ghost_places(self) -> list[int]:
         state, place = self.state, self.state.place
@@ -240,16 +237,16 @@ class Preview(Panel):
         if self.view.want() is None or self.stage is None:
             return
         self.view.say("")
-        playing = self.state.playback.playing
+        course = self.state.playback.course
         ghosts = [each for each in map(self.reader.frame, self._ghost_places()) if each is not None]
         step = abs(place - self.shown)
         elapsed = step / self.state.fps if self.shown >= 0 and step <= self.state.fps else math.inf
         if self.frame is None:
             self.stage.face(front(self.state, self.mode, place, frame) + ASIDE)
         self.frame, self.shown = frame, place
-        self.stage.show(frame, ghosts, elapsed=elapsed, moving=playing)
-        if playing:
-            self.dropped.saw(place, self._count, self.state.playback.speed)
+        self.stage.show(frame, ghosts, elapsed=elapsed, moving=course is not None)
+        if course is not None:
+            self.dropped.saw(place, course)
             self._say_rate()
         self.drawn.emit(place)
 

@@ -33,6 +33,7 @@ class SourceStrip(Panel):
         self.state = state
         self.view = StripView()
         self._shown: dict[str, tuple[Any, Strip]] = {}
+        self._project: object = None
         self.legend = Elided(LEGEND)
         self.legend.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         row = self.header.row
@@ -68,6 +69,8 @@ class SourceStrip(Panel):
 
     def refresh(self, *_: object) -> None:
         """Show the structure of the chosen sequence; while it is found anew the one before stays in sight."""
+        if self.state.project is not self._project:
+            self._project, self._shown = self.state.project, {}
         sequence = self.sequence
         structure = structure_of(self.state, sequence.id) if sequence is not None else None
         if sequence is not None and structure is not None:
