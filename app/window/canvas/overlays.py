@@ -76,7 +76,7 @@ class TrackLayer:
                 self._name(painter, view, track, size, taken)
 
     def _path(self, painter: QPainter, view: View, track: TrackMark) -> None:
-        colour = theme.active().colour(track.colour)
+        colour = theme.DARK.colour(track.colour)
         reach = 2 if track.selected else 1
         first, last = max(self.frame - PAST * reach, 0), min(self.frame + FUTURE * reach, len(track.positions) - 1)
         for begin, end, dash in ((first, self.frame, False), (self.frame, last, True)):
@@ -87,7 +87,7 @@ class TrackLayer:
         place = track.at(self.frame)
         if place is None:
             return
-        look = theme.active()
+        look = theme.DARK
         x, y = view.point(*place)
         colour = look.colour("edit" if track.clicked and track.selected else track.colour)
         if track.state == "hidden":
@@ -110,7 +110,7 @@ class TrackLayer:
             return
         side = "right" if x > size[0] - 90 else "left"
         shift = -14 if side == "right" else 14
-        colour = theme.active().colour(track.colour)
+        colour = theme.DARK.colour(track.colour)
         width, height = marks.plate_size(track.title)
         wanted = track.selected or track.name == self.hovered
         for rise in (-14.0, 14.0, -34.0, 34.0):
@@ -143,5 +143,5 @@ class GhostPath:
 
     def paint(self, painter: QPainter, view: View, size: tuple[int, int]) -> None:
         """Draw the old path."""
-        colour = theme.active().colour(self.colour, 150)
+        colour = theme.DARK.colour(self.colour, 150)
         marks.stroke(painter, path_through(view.to_widget(self.positions)), colour, 1.2, dash=True)
