@@ -23,9 +23,9 @@ def body(name: str, phase: float, seed: int) -> Mesh:
 
 
 @pytest.fixture(scope="module")
-def raised() -> Registration:
-    """An arm that goes up while the trunk leans."""
-    return tvmedit.register(body("side bend", 0.05, 1), body("side bend", 0.2, 2), height=1.75, edge=0.024)
+def spread() -> Registration:
+    """Raised arms and closed legs into raised arms and spread legs."""
+    return tvmedit.register(body("wave both", 0.6, 1), body("jumping jack", 0.5, 2), height=1.75, edge=0.024)
 
 
 def chain(angle: float, links: int = 6) -> tuple[DeformationGraph, np.ndarray, np.ndarray]:
@@ -61,24 +61,24 @@ def test_parts_that_do_not_hang_together_move_on_their_own() -> None:
     assert np.linalg.norm(np.diff((graph.places + moved)[4:], axis=0), axis=1) == pytest.approx([1, 1])
 
 
-def test_both_ends_are_met(raised: Registration) -> None:
+def test_both_ends_are_met(spread: Registration) -> None:
     """Nothing of the deformation is the mesh itself; all of it lies on the target."""
-    assert not raised.reason
-    assert raised.between(0.0) == pytest.approx(raised.vertices, abs=1e-9)
-    assert raised.residual < 0.048
+    assert not spread.reason
+    assert spread.between(0.0) == pytest.approx(spread.vertices, abs=1e-9)
+    assert spread.residual < 0.048
 
 
-def test_half_way_the_body_is_whole_and_stands_on_the_ground(raised: Registration) -> None:
+def test_half_way_the_body_is_whole_and_stands_on_the_ground(spread: Registration) -> None:
     """Its volume is within 2 %, its feet at the height of both ends."""
-    half = raised.between(0.5)
-    assert mesh_volume(half, raised.faces) == pytest.approx(mesh_volume(raised.vertices, raised.faces), rel=0.02)
-    assert np.sort(half[:, 2])[:20].mean() == pytest.approx(np.sort(raised.vertices[:, 2])[:20].mean(), abs=0.003)
+    half = spread.between(0.5)
+    assert mesh_volume(half, spread.faces) == pytest.approx(mesh_volume(spread.vertices, spread.faces), rel=0.02)
+    assert np.sort(half[:, 2])[:20].mean() == pytest.approx(np.sort(spread.vertices[:, 2])[:20].mean(), abs=0.003)
 
 
-def test_half_way_is_the_pose_half_way(raised: Registration) -> None:
-    """Against the truth meshed finely: within a third of a mesh edge on average."""
+def test_half_way_is_the_pose_half_way(spread: Registration) -> None:
+    """Against the truth meshed finely: within a quarter of a mesh edge on average."""
     from scipy.spatial import cKDTree
 
-    pose = 0.5 * (motion_pose("side bend", 0.05) + motion_pose("side bend", 0.2))
+    pose = 0.5 * (motion_pose("wave both", 0.6) + motion_pose("jumping jack", 0.5))
     fine, _, _ = body_mesh(body_capsules(body_joints(pose)), cell=0.011)
-    assert cKDTree(fine).query(raised.between(0.5))[0].mean() < 0.008
+    assert cKDTree(fine).query(spread.between(0.5))[0].mean() < 0.006

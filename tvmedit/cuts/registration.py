@@ -18,7 +18,7 @@ SPACING = 0.1015
 PERSON = 1.75
 SKIN = 2.2
 """Height in metres, and surface in square metres of a body that is large for it: what lies low is not small."""
-SAMPLES = 1500
+SAMPLES = 1000
 POINT_SHARE = 0.25
 FACING = 0.3
 """Cosine of the angle between the normals of two partners: about 72 degrees."""
@@ -143,13 +143,13 @@ def body_scale(vertices: Array, faces: Faces, height: float) -> float:
 
 
 def _schedule(iterations: int, *, warm: bool) -> list[tuple[float, float]]:
-    """Stiffness 3 to 0.1 and distance gate 30 to 15 cm, geometrically; a warm start begins half of the way.
+    """Stiffness 3 to 0.2 and distance gate 40 to 5 cm, geometrically; a warm start begins half of the way.
 
-    A tighter gate in the end loses limbs that are still on their way.
+    A wider gate in the end catches limbs that are far on their way, and now and then the wrong one, unnoticed.
     """
     first = 0.5 if warm else 0.0
     shares = np.linspace(first, 1.0, iterations)
-    return [(3.0 * (0.1 / 3.0) ** s, 0.3 * 0.5**s) for s in shares.tolist()]
+    return [(3.0 * (0.2 / 3.0) ** s, 0.4 * (0.05 / 0.4) ** s) for s in shares.tolist()]
 
 
 def _first_guess(graph: DeformationGraph, start: Registration | None) -> tuple[Array, Array]:
