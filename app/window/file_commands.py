@@ -145,7 +145,7 @@ class FileCommands(QObject):
             self.shell.tell_note("All media lie in the project already.")
             return
         job = project.call("Copying media", lambda tell: collecting.copied_media(document, folder, folder, tell))
-        self._await(project, job, self._collected)
+        self.when_done(project, job, self._collected)
 
     def _collected(self, project: Project, copies: collecting.Copies) -> None:
         self._guard(lambda: project.session.apply(collecting.use_copies(project.document, copies)))
@@ -185,7 +185,7 @@ class FileCommands(QObject):
         project.saved_changed.emit()
         return True
 
-    def _await(self, project: Project, job: Job, done: Callable[[Project, object], object]) -> None:
+    def when_done(self, project: Project, job: Job, done: Callable[[Project, object], object]) -> None:
         """Call ``done`` in the window's thread when a job has ended well."""
         self._awaited[job] = done
         project.job_ended.connect(self._ended)
@@ -224,7 +224,7 @@ class FileCommands(QObject):
             return
         job = project.call(f"Reading {path.name}", lambda _: bringing.read_clip(session, path))
         take = bringing.take_clip
-        self._await(project, job, lambda project, clip: self._guard(lambda: take(project.session, clip, path.stem)))
+        self.when_done(project, job, lambda project, clip: self._guard(lambda: take(project.session, clip, path.stem)))
 
     def use_cameras(self, path: Path) -> None:
         """Take the cameras from another program's file."""
@@ -271,14 +271,7 @@ class FileCommands(QObject):
         job = project.call(
             f"Exporting {path.name}", lambda progress: write_motion(still, character.id, path, None, progress)
         )
-
-        def ended(other: Job) -> None:
-            if other is job:
-                project.job_ended.disconnect(ended)
-                if job.state == "done":
-                    self.shell.tell_note(f"{character.name} was written to {path.name}.")
-
-        project.job_ended.connect(ended)
+        self.when_done(project, job, lambda *_: self.shell.tell_note(f"{character.name} was written to {path.name}."))
 
     def _guard(self, call: Callable[[], object]) -> None:
         try:

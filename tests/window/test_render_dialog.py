@@ -191,6 +191,22 @@ def test_a_cancelled_film_leaves_the_old_one(measured: Shell, tmp_path: Path) ->
     assert "suffix .mp4" in done(dialog)
 
 
+def test_a_film_goes_on_when_the_dialog_is_closed(measured: Shell, tmp_path: Path) -> None:
+    """Esc closes the dialog, the bar above still shows the job; in the end the window says that it is written."""
+    dialog = opened(measured)
+    made(dialog)
+    range_of(dialog, 2, 9)
+    dialog.film.target.path.setText(str(tmp_path / "out.mp4"))
+    QTest.mouseClick(dialog.film.target.write, LEFT)
+    QTest.keyClick(dialog, Qt.Key.Key_Escape)
+    wait_for(lambda: not measured.findChildren(RenderDialog))
+    assert measured.project.progress
+    wait_for(lambda: not measured.project.progress, 120)
+    settle()
+    assert (tmp_path / "out.mp4").stat().st_size > 1000
+    assert measured.video.errors.sentence.text() == "out.mp4 is written."
+
+
 def test_closing_the_window_ends_the_rendering(measured: Shell, tmp_path: Path) -> None:
     """Dialog, thread and job go with the project; no file is left."""
     dialog = opened(measured)
@@ -232,14 +248,15 @@ def test_comparisons_are_computed_and_filmed(shell: Shell, tmp_path: Path) -> No
     page.variants["first_pass"].setFocus()
     QTest.keyClick(page.variants["first_pass"], Qt.Key.Key_Space)
     assert page.chosen == ("anchors_only",)
+    QTest.mouseClick(page.preview.help, LEFT)
+    made(dialog, lambda character, there, *_: there == ("anchors_only",))
+    assert page.preview.picture.picture.width() >= 640
     QTest.mouseClick(page.target.write, LEFT)
     assert done(dialog) == "small compared.mp4 is written."
     frames = open_video(tmp_path / "small compared.mp4")
     assert len(frames) == 24
     assert frames.size[0] >= 640
     frames.close()
-    made(dialog, lambda character, there, *_: there == ("anchors_only",))
-    assert page.preview.picture.picture.width() >= 640
 
 
 @pytest.mark.parametrize("form", ["Animated GLB", "Folder of PLY files"])

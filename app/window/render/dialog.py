@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QEvent, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QKeyEvent, Qt
 from PySide6.QtWidgets import QButtonGroup, QDialog, QHBoxLayout, QStackedWidget, QToolButton, QVBoxLayout, QWidget
 
+from app.stages.job import Job
 from app.window import icons, settings
 from app.window.project import Project
 from app.window.render.background_page import BackgroundPage
@@ -28,9 +31,13 @@ SOON = 40
 
 
 class RenderDialog(QDialog):
-    """Belongs to one project and closes with it; work goes on when it is closed. ``asked`` names a command."""
+    """Belongs to one project and closes with it. ``asked`` names a command of the window.
+
+    Work goes on when it is closed: ``left`` hands its job over.
+    """
 
     asked = Signal(str)
+    left = Signal(object)
 
     def __init__(self, project: Project, parent: QWidget) -> None:
         super().__init__(parent)
@@ -137,8 +144,15 @@ class RenderDialog(QDialog):
         ):
             signal.disconnect(self._soon)
         for page in self._pages:
+            if page.target.job is not None:
+                self.left.emit(page.target.job)
             page.close_calls(wait=self._wait)
         event.accept()
+
+
+def _tell_later(shell: Shell, project: Project, job: Job) -> None:
+    """Tell in the window what a job has written, now that the dialog is closed."""
+    shell.files.when_done(project, job, lambda _, path: shell.tell_note(f"{Path(str(path)).name} is written."))
 
 
 def open_render(shell: Shell, page: str = "film") -> RenderDialog | None:
@@ -150,6 +164,7 @@ def open_render(shell: Shell, page: str = "film") -> RenderDialog | None:
     dialog = known[0] if known else RenderDialog(project, shell)
     if not known:
         dialog.asked.connect(shell.do)
+        dialog.left.connect(partial(_tell_later, shell, project))
     dialog.show_page(page)
     dialog.show()
     dialog.raise_()

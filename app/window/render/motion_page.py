@@ -82,6 +82,7 @@ class ComparePage(OfOneCharacter):
             self.options.rows.addWidget(box)
         self.options.rows.addStretch(1)
         self.target.wanted.connect(self._render)
+        self.preview.asked.connect(self._compute)
         self.target.suggest(f"{project.document.name} compared", ".mp4", VIDEO, folder=False)
 
     @property
@@ -103,6 +104,14 @@ class ComparePage(OfOneCharacter):
             self.variants[name].setToolTip("" if posed else "Needs a pose that was edited by hand")
         self.target.write.setEnabled(character is not None and bool(self.chosen))
         self.preview.show_comparison(character.id if character is not None else "", self.chosen)
+
+    def _compute(self, command: str) -> None:
+        """Compute the comparisons that are ticked, to see them here."""
+        character = self.character
+        if command == "comparisons" and character is not None:
+            stages = self.project.session.stages
+            wanted = (stages.comparison(character.id, each) for each in self.chosen)
+            self.project.start("Computing the comparisons", *wanted)
 
     def _render(self) -> None:
         still, variants, character = self.project.session.as_it_is(), self.chosen, self.character

@@ -24,7 +24,11 @@ LACKING = {
         "Solve the motion",
         "propagate",
     ),
-    "comparison": ("What is not computed yet is left out here: rendering computes it first.", "", ""),
+    "comparison": (
+        "What is not computed yet is left out here: rendering computes it first.",
+        "Compute them now",
+        "comparisons",
+    ),
     "unmeasured": (
         "The background has not been measured yet: writing measures it first.",
         "Measure the background",
