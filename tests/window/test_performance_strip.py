@@ -6,6 +6,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.window import theme
 from app.window.performance.strip import BOX, RULER, drag_of
 from app.window.shell import Shell
 from tests.window.conftest import at, drag, settle, wait_for
@@ -178,3 +179,14 @@ def test_the_matrix_shows_and_moves_boundaries(composed: Shell, strip: object) -
     page.matrix.closed.emit()
     assert page.side.currentWidget() is page.preview
     assert not strip.matrix_button.isChecked()
+
+
+def test_colours_follow_the_look(composed: Shell, strip: object) -> None:
+    """Light or dark, motions have the colours of that look, in the strip and on the cards."""
+    shown = composed.pages.in_sight.library.cards
+    for look in (theme.LIGHT, theme.DARK):
+        composed.do("light")
+        settle(50)
+        assert theme.active() is look
+        assert {motion.colour for motion in strip.view.strip.motions} <= set(look.tracks)
+        assert {piece.colour for card in shown.cards for piece in card.strip} <= set(look.tracks)

@@ -312,6 +312,12 @@ class Library(Panel):
     def _menu(self, sequence_id: str, place: QPoint) -> None:
         self.menu_for(sequence_id).popup(place)
 
+    def changeEvent(self, event: QEvent) -> None:
+        """Take the colours of another look."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self.isVisible():
+            self.refresh()
+
     # dropping ----------------------------------------------------------------------------------------------------
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from PySide6.QtCore import QPoint, Qt, Signal
+from PySide6.QtCore import QEvent, QPoint, Qt, Signal
 from PySide6.QtWidgets import QMenu, QSizePolicy
 
 from app.model.edits import performance, sequences
@@ -92,6 +92,12 @@ class SourceStrip(Panel):
         self._caption(kept[1] if kept is not None else None, structure is None)
         self._move()
         self.refreshed.emit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        """Take the colours of another look."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self.isVisible():
+            self.refresh()
 
     def _why_empty(self, sequence: CapturedSequence | None) -> str:
         project = self.state.project

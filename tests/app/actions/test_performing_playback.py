@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +16,11 @@ from app.actions.performing_matrix import similarity
 from app.actions.performing_playback import performance_shown, sequence_shown
 from app.actions.performing_wishes import Wish, why_no_animation, write_wish
 from app.actions.session import Session
+from app.formats.tvm import open_mesh_frames
 from app.model.edits import performance
 from app.model.performance import Motion
 from imitation.errors import Cancelled, InputError
-from tests.app.captured import write_capture
+from tests.app.captured import small_capture, write_capture
 
 
 @pytest.fixture(scope="module")
@@ -128,3 +130,27 @@ def test_reading_changes_nothing_until_it_is_taken(session: Session, tmp_path: P
     with pytest.raises(InputError, match="has 3 frames, but again was made of"):
         performing.find_again(session, made, short)
     session.undo()
+
+
+def test_frames_of_one_connectivity_are_one_animated_glb(tmp_path: Path) -> None:
+    """Where all frames have the same faces nothing speaks against it, and the file holds every frame."""
+    vertices, faces, colours = small_capture().mesh(0)
+    turns = 2 * np.pi * np.arange(60) / 15
+    frames = []
+    for turn in turns:
+        swayed = vertices.copy()
+        swayed[:, 1] += 0.25 * np.sin(turn) * vertices[:, 2]
+        swayed[:, 2] *= 1 + 0.1 * np.cos(turn)
+        frames.append(swayed)
+    np.savez(tmp_path / "sway.npz", vertices=np.array(frames, np.float32), faces=faces, colors=colours, fps=[15])
+    with closing(Session.new(tmp_path / "film")) as session:
+        made, _ = performing.add_sequence(session, tmp_path / "sway.npz", up="z", unit=1.0)
+        session.apply(performance.add_key(session.document, Motion(made, 20)))
+        placed: Any = session.result(session.stages.performance)
+        assert why_no_animation(session) == ""
+        write_wish(session, Wish("animation", tmp_path / "sway.glb"))
+        back = open_mesh_frames(tmp_path / "sway.glb")
+        assert len(back) == len(placed.performance)
+        assert back.moving
+        shown = performance_shown(session)[7].vertices
+        np.testing.assert_allclose(back[7].vertices, shown, atol=1e-3)
