@@ -380,6 +380,8 @@ class MeshView(Panel):
             paint_ghosts(painter, lens, self.ghosts())
 
     def _paint_trails(self, painter: QPainter, lens: Lens, view: Viewport) -> None:
+        if view.carrying:
+            return  # the hand's own vertex is what counts now, and every millisecond
         if view.shows("tracks"):
             if view.through_camera:
                 paint_points(painter, self.trails(True), view.view.scale, view.view.x, view.view.y)
@@ -390,7 +392,7 @@ class MeshView(Panel):
             paint_camera(painter, lens, view.camera, (view.picture.width(), view.picture.height()), reach)
 
     def _paint_legends(self, painter: QPainter, lens: Lens, pane: Pane) -> None:
-        if pane.view.gizmo is None and pane.kind == "main" and pane.view.handles:
+        if pane.view.gizmo is None and pane.kind == "main" and pane.view.handles and not pane.view.carrying:
             paint_legend(painter, lens, ghosts=self.ghost_button.isChecked())
         if self.heat is not None:
             paint_heat_legend(painter, lens, self.heat)

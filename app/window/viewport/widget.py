@@ -277,6 +277,11 @@ class Viewport(QWidget):
         """Whether a vertex or the gizmo is held."""
         return self.mouse.drag is not None
 
+    @property
+    def carrying(self) -> bool:
+        """Whether what is held is being moved."""
+        return self.mouse.drag is not None and self.mouse.drag.dragging
+
     def vertex_at(self, place: tuple[float, float]) -> int:
         """The vertex at a widget place: that of a handle first, else the nearest visible one; -1 for none."""
         return self.mouse.vertex_at(place)
