@@ -1,16 +1,24 @@
-"""What hands do in the Motion graph: places of nodes and blocks, waiting for results."""
+"""What hands do in the Motion graph: places of nodes and blocks, waiting for results; the window they work on."""
 
 from __future__ import annotations
 
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.actions.session import Session
 from app.window.performance.blocks import Block, box
 from app.window.shell import Shell
 from app.window.timeline.lanes import RULER
 from tests.window.conftest import at, settle, wait_for
+from tests.window.small_performance import build_small_performance
 
 LEFT = Qt.MouseButton.LeftButton
+CONTROL = Qt.KeyboardModifier.ControlModifier
 WALK, JACK, SQUAT, MARCH = range(4)
 
 
@@ -87,3 +95,32 @@ class PerformingHands:
         """Press a key wherever the focus is."""
         widget = self.shell.focusWidget() or self.shell
         QTest.keyClick(widget, key, keys)
+
+
+@pytest.fixture(scope="session")
+def analysed(tmp_path_factory: pytest.TempPathFactory, private_places: None) -> Path:
+    """A project of two takes with its motion graph."""
+    return build_small_performance(tmp_path_factory.mktemp("moves"))
+
+
+@pytest.fixture
+def hands(analysed: Path, tmp_path: Path, open_shell: Callable[[Session], Shell]) -> PerformingHands:
+    """Hands on the Motion graph of a window, the graph in sight."""
+    copy = tmp_path / analysed.name
+    shutil.copytree(analysed, copy)
+    shell = open_shell(Session.open(copy))
+    QTest.keyClick(shell, Qt.Key.Key_F3)
+    made = PerformingHands(shell)
+    made.ready()
+    return made
+
+
+def entries(shell: Shell) -> int:
+    """How many entries the history has up to the present."""
+    assert shell.project is not None
+    return shell.project.session.history.present
+
+
+def undo(hands: PerformingHands) -> None:
+    """Ctrl+Z."""
+    hands.press(Qt.Key.Key_Z, CONTROL)
