@@ -14,7 +14,7 @@ from app.actions.session import Session
 from imitation.errors import InputError
 from imitation.progress import Progress, part, silent
 
-WishForm = Literal["ply", "obj", "off", "glb", "npz", "animation", "film"]
+WishForm = Literal["ply", "obj", "off", "glb", "npz", "animation", "film", "path"]
 
 
 @attrs.frozen
@@ -23,7 +23,7 @@ class Wish:
 
     Attributes
     ----------
-    form : meshes as in ``export_performance``, or a film.
+    form : meshes as in ``export_performance``, a film, or nothing but ``path.json``.
     target : a folder for "ply", "obj", "off" and "glb", else a file.
     blended : with in-betweens at the cuts.
     path : write ``path.json`` too: inside the folder, or beside the file under its name.
@@ -56,6 +56,9 @@ def write_wish(session: Session, wish: Wish, progress: Progress | None = None) -
     Raises ``InputError`` when the performance has not been composed, or cannot be written so.
     """
     report = progress or silent
+    if wish.form == "path":
+        write_path(session, wish.target)
+        return f"Written: {wish.target.name}."
     most = part(report, 0.0, 0.98 if wish.path else 1.0)
     if wish.form == "film":
         from app.actions.performing_films import film_performance

@@ -14,7 +14,7 @@ from app.formats.tvm import open_mesh_frames
 from app.window.performance.export_dialog import FORMS, ExportDialog
 from app.window.shell import Shell
 from tests.window.conftest import settle, wait_for
-from tests.window.performance_parts import CONTROL, LEFT, PLAIN
+from tests.window.performance_parts import CONTROL, LEFT, PLAIN, drop, label_of, quiet
 from tests.window.performance_parts import composed as composed
 from tests.window.performance_parts import composed_project as composed_project
 
@@ -80,6 +80,27 @@ def test_meshes_and_path(composed: Shell, tmp_path: Path) -> None:
     place(again, tmp_path / "made")
     assert "will be replaced" in again.words.text()
     again.reject()
+
+
+def test_the_path_alone_is_written_and_taken_again(composed: Shell, tmp_path: Path) -> None:
+    """What was composed is a file; dropped on the library it is one entry of the history."""
+    from app.model.edits import performance
+
+    dialog = ask(composed)
+    choose(dialog, "path")
+    place(dialog, tmp_path / "made")
+    assert not dialog.blended.isVisible()
+    assert finished(dialog) == "Written: made.json."
+    choice = composed.project.document.performance
+    composed.project.edit(performance.set_keys, [])
+    drop(composed.pages.in_sight.library, tmp_path / "made.json")
+    assert composed.project.document.performance == choice
+    assert label_of(composed) == "Take the choices of made.json"
+    (tmp_path / "other.json").write_text("{}")
+    drop(composed.pages.in_sight.library, tmp_path / "other.json")
+    assert "is no path that Motionwright wrote" in composed.pages.errors.sentence.text()
+    assert composed.project.document.performance == choice
+    quiet(composed)
 
 
 def test_an_npz_gets_its_ending(composed: Shell, tmp_path: Path) -> None:

@@ -34,6 +34,7 @@ FORMS = (
     ("npz", "NumPy, one file", ".npz"),
     ("animation", "One animated GLB", ".glb"),
     ("film", "Film, mp4", ".mp4"),
+    ("path", "The path only: what was composed, and how", ".json"),
 )
 SIZES = ((640, 360), (960, 540), (1280, 720), (1920, 1080), (720, 720))
 ANGLE = NumberRange(-360.0, 360.0, 1.0, 0, "°", 60.0)
@@ -182,13 +183,15 @@ class ExportDialog(QDialog):
         """Show what belongs to the form, and why it cannot be written where it cannot."""
         project, writing = self.state.project, self.job is not None
         self.film.setVisible(self.chosen == "film")
+        for box in (self.blended, self.path):
+            box.parentWidget().setVisible(self.chosen != "path")
         self.body.setEnabled(not writing)
         why = self._still if self.chosen == "animation" else ""
         if project is None or self.state.placed is None:
             why = (
                 "The performance is still being composed." if self.state.frame_count else "Compose a performance first."
             )
-        elif self.blended.isChecked() and not self._blends_ready():
+        elif self.chosen != "path" and self.blended.isChecked() and not self._blends_ready():
             why = why or BLENDING
         self.why.setText(why)
         self.why.parentWidget().setVisible(bool(why))

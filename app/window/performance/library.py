@@ -161,6 +161,8 @@ class Library(Panel):
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Folder of meshes, one a frame…", self.ask_folder)
         menu.addAction("File: npz, animated GLB or USD…", self.ask_file)
+        if self.state.document.sequences:
+            menu.addAction("Key motions of an exported path…", self.ask_path)
         project = self.state.project
         for character in project.document.characters if project is not None else ():
             action = menu.addAction(
@@ -182,6 +184,20 @@ class Library(Panel):
         chosen, _ = QFileDialog.getOpenFileName(self, "Add a sequence", str(Path.home()), FILTER)
         if chosen:
             self.add(Path(chosen))
+
+    def ask_path(self) -> None:
+        """Ask for a path that was exported, and take its choices."""
+        chosen, _ = QFileDialog.getOpenFileName(self, "Key motions of a path", str(Path.home()), "Paths (*.json)")
+        if chosen:
+            self.take_path(Path(chosen))
+
+    def take_path(self, path: Path) -> None:
+        """Take key motions and all other choices of a path that was exported: one entry of the history."""
+        from app.actions.performing_path import choice_from_path
+
+        project = self.state.project
+        if project is not None:
+            project.edit(lambda _: choice_from_path(project.session, path))
 
     def add(self, path: Path) -> None:
         """Read a sequence in the background, then add it."""
@@ -321,17 +337,27 @@ class Library(Panel):
     # dropping ----------------------------------------------------------------------------------------------------
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        """Take folders and files of meshes."""
-        if any(_is_sequence(Path(url.toLocalFile())) for url in event.mimeData().urls() if url.isLocalFile()):
+        """Take folders and files of meshes, and paths that were exported."""
+        if any(_is_known(Path(url.toLocalFile())) for url in event.mimeData().urls() if url.isLocalFile()):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:
         """Add what was dropped."""
         for url in event.mimeData().urls():
             path = Path(url.toLocalFile())
-            if _is_sequence(path):
+            if _is_path(path):
+                self.take_path(path)
+            elif _is_sequence(path):
                 self.add(path)
         event.acceptProposedAction()
+
+
+def _is_known(path: Path) -> bool:
+    return _is_sequence(path) or _is_path(path)
+
+
+def _is_path(path: Path) -> bool:
+    return path.suffix.lower() == ".json" and path.is_file()
 
 
 def _is_sequence(path: Path) -> bool:
