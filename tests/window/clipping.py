@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QLabel, QPushButton
+from PySide6.QtWidgets import QLabel, QPushButton, QWidget
 
 from app.window.controls import ScrollColumn
 from app.window.shell import Shell
@@ -10,6 +10,12 @@ from app.window.shell import Shell
 
 def assert_nothing_clipped(shell: Shell) -> None:
     """No inspector is wider than its column and no button or label in sight cuts its text."""
+    assert_whole(shell)
+    assert shell.pages.height() > 250
+
+
+def assert_whole(shell: QWidget) -> None:
+    """The same of any window."""
     for column in shell.findChildren(ScrollColumn):
         if column.isVisible():
             assert column.widget().width() <= column.viewport().width() + 1
@@ -19,4 +25,3 @@ def assert_nothing_clipped(shell: Shell) -> None:
     for label in shell.findChildren(QLabel):
         if label.isVisible() and type(label).__name__ == "QLabel" and not label.wordWrap():
             assert label.width() >= label.sizeHint().width() - 1, label.text()
-    assert shell.pages.height() > 250

@@ -18,6 +18,7 @@ from app.stages.results import Masks
 from app.window import settings
 from app.window.shell import Shell
 from imitation.errors import NoSolution
+from tests.window.clipping import assert_nothing_clipped
 from tests.window.conftest import at, drag, settle, wait_for
 from tests.window.measured import measure
 from tests.window.small_project import SIZE, small_clip
@@ -331,3 +332,19 @@ def test_contacts_are_put_onto_the_measured_background(measured: Shell) -> None:
     assert project.document.world.ground == "local"
     project.cancel_work()
     wait_for(lambda: not project.progress)
+
+
+@pytest.mark.parametrize("width", [1180, 1440])
+def test_nothing_of_the_bar_is_clipped(shell: Shell, width: int) -> None:
+    """Measured or not, at the smallest size and the usual one."""
+    shell.opened.keeper.automatic = False
+    shell.resize(width, 760)
+    QTest.keyClick(shell, Qt.Key.Key_7, ALT)
+    settle(100)
+    assert shell.video.background.bar.isVisible()
+    assert_nothing_clipped(shell)
+    measure(shell.project.session)
+    shell.video.refresh()
+    wait_for(lambda: shell.video.shown.backdrop is not None)
+    settle(100)
+    assert_nothing_clipped(shell)

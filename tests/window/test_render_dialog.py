@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QComboBox, QWidget
+from PySide6.QtWidgets import QComboBox, QToolButton, QWidget
 
 from app.actions.session import Session
 from app.formats import open_video
@@ -17,6 +17,7 @@ from app.window import settings
 from app.window.render.choices import FilmChoices, remembered
 from app.window.render.dialog import RenderDialog
 from app.window.shell import Shell
+from tests.window.clipping import assert_whole
 from tests.window.conftest import settle, wait_for
 from tests.window.measured import measure
 
@@ -315,3 +316,17 @@ def test_the_quick_export_is_a_job_too(shell: Shell, tmp_path: Path, monkeypatch
     wait_for(lambda: not shell.project.progress, 60)
     settle()
     assert "names no known form" in shell.video.errors.sentence.text()
+
+
+@pytest.mark.parametrize("size", [(860, 560), (1280, 800)])
+def test_nothing_of_the_dialog_is_clipped(shell: Shell, size: tuple[int, int]) -> None:
+    """At its smallest and larger, no page cuts a button or label, and every button says what it is."""
+    shell.opened.keeper.automatic = False
+    dialog = opened(shell)
+    dialog.resize(*size)
+    for name, tab in dialog.tabs.items():
+        QTest.mouseClick(tab, LEFT)
+        settle(100)
+        assert_whole(dialog)
+        for each in dialog.findChildren(QToolButton):
+            assert each.text() or (each.toolTip() and each.accessibleName()), name
