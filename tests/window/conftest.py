@@ -104,6 +104,8 @@ def open_shell(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> Iterator[
         shell.resize(1440, 900)
         shell.show()
         QTest.qWaitForWindowExposed(shell)
+        shell.activateWindow()  # where no window manager gives it the keys
+        QTest.qWaitForWindowActive(shell)
         return shell
 
     yield open_
