@@ -65,7 +65,7 @@ def export_performance(
     )
     if not textured:
         return chosen, ""
-    if chosen == "obj":
+    if chosen in ("obj", "ply", "glb"):
         note = f"{blends} blended frames have colours at their vertices instead of pictures." if blends else ""
         return chosen, note
     return chosen, f"{chosen.upper()} holds no pictures here: {textured} frames have their colours at the vertices."

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import attrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,23 +16,44 @@ from imitation.errors import InputError
 VERTICES, INDICES = 34962, 34963
 
 
+@attrs.frozen(eq=False)
+class Surface:
+    """Vertices (n, 3) in the file's world, and the primitives on them with their triangles (m, 3)."""
+
+    vertices: NDArray[np.float64]
+    colors: NDArray[np.uint8] | None
+    parts: list[tuple[dict[str, Any], NDArray[np.int64]]]
+
+
 def read_glb(path: Path, data: bytes) -> MeshFile:
     """Read all triangles of a GLB's scene as one mesh, turned to Z up; see read_mesh."""
-    gltf = read_gltf(path, data)
+    return glb_mesh(read_gltf(path, data), path.name)
+
+
+def glb_mesh(gltf: Gltf, name: str) -> MeshFile:
+    """All surfaces of a scene one after another as one mesh, turned to Z up."""
     try:
-        pieces = [piece for node, matrix in nodes(gltf) for piece in _primitives(gltf, node, matrix)]
+        pieces = surfaces(gltf)
     except (ValueError, KeyError, IndexError, TypeError) as error:
-        raise InputError(f"The file {path.name} is not a whole GLB or glTF file: export it again.") from error
+        raise InputError(f"The file {name} is not a whole GLB or glTF file: export it again.") from error
     if not pieces:
-        return MeshFile(np.zeros((0, 3)), np.zeros((0, 3)), None, "z", path.name)
-    starts = np.cumsum([0, *(len(vertices) for vertices, _, _ in pieces)])
-    vertices = np.concatenate([piece[0] for piece in pieces])
-    faces = np.concatenate([piece[1] + start for piece, start in zip(pieces, starts, strict=False)])
+        return MeshFile(np.zeros((0, 3)), np.zeros((0, 3)), None, "z", name)
+    starts = np.cumsum([0, *(len(piece.vertices) for piece in pieces)])
+    vertices = np.concatenate([piece.vertices for piece in pieces])
+    parts = [part + start for piece, start in zip(pieces, starts, strict=False) for _, part in piece.parts]
     colors = None
-    if any(piece[2] is not None for piece in pieces):
-        white = [np.full((len(piece[0]), 3), 255, np.uint8) if piece[2] is None else piece[2] for piece in pieces]
+    if any(piece.colors is not None for piece in pieces):
+        white = [
+            np.full((len(piece.vertices), 3), 255, np.uint8) if piece.colors is None else piece.colors
+            for piece in pieces
+        ]
         colors = np.concatenate(white)
-    return MeshFile(y_up_to_z_up(vertices), to_int32(faces, path.name), colors, "z", path.name)
+    return MeshFile(y_up_to_z_up(vertices), to_int32(np.concatenate(parts), name), colors, "z", name)
+
+
+def surfaces(gltf: Gltf) -> list[Surface]:
+    """All surfaces of the default scene in the order of its nodes."""
+    return [piece for node, matrix in nodes(gltf) for piece in _primitives(gltf, node, matrix)]
 
 
 def write_glb(
@@ -115,36 +137,30 @@ def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
     return matrix
 
 
-Piece = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.uint8] | None]
-
-
-def _primitives(gltf: Gltf, node: dict[str, Any], matrix: NDArray[np.float64]) -> list[Piece]:
+def _primitives(gltf: Gltf, node: dict[str, Any], matrix: NDArray[np.float64]) -> list[Surface]:
     if "mesh" not in node:
         return []
-    pieces: list[Piece] = []
-    shared: dict[int, int] = {}
+    # Exporters cut one surface into materials that share their vertices: it stays one surface.
+    pieces: dict[int, Surface] = {}
     # A skinned mesh is placed by its joints; in rest that is where its own coordinates are.
     place = np.eye(4) if "skin" in node else matrix
     for primitive in gltf.items("meshes")[node["mesh"]]["primitives"]:
         if primitive.get("mode", 4) not in (4, 5, 6):
             continue
-        attributes = primitive["attributes"]
-        key = attributes["POSITION"]
-        local = gltf.accessor(key).astype(np.float64)
-        indices = gltf.accessor(primitive["indices"]) if "indices" in primitive else np.arange(len(local))
+        key = primitive["attributes"]["POSITION"]
+        if key not in pieces:
+            local = gltf.accessor(key).astype(np.float64)
+            placed = local @ place[:3, :3].T + place[:3, 3]
+            pieces[key] = Surface(placed, _colors(gltf, primitive, len(local)), [])
+        count = len(pieces[key].vertices)
+        indices = gltf.accessor(primitive["indices"]) if "indices" in primitive else np.arange(count)
         faces = _triangles(indices.reshape(-1).astype(np.int64), primitive.get("mode", 4))
-        if len(faces) and faces.max() >= len(local):
+        if len(faces) and faces.max() >= count:
             raise ValueError("index")
         if np.linalg.det(place[:3, :3]) < 0:
             faces = faces[:, ::-1]
-        if key in shared:
-            # Exporters cut one surface into materials that share their vertices: it stays one surface.
-            vertices, known, colors = pieces[shared[key]]
-            pieces[shared[key]] = (vertices, np.concatenate([known, faces]), colors)
-            continue
-        shared[key] = len(pieces)
-        pieces.append((local @ place[:3, :3].T + place[:3, 3], faces, _colors(gltf, primitive, len(local))))
-    return pieces
+        pieces[key].parts.append((primitive, faces))
+    return list(pieces.values())
 
 
 def _triangles(indices: NDArray[np.int64], mode: int) -> NDArray[np.int64]:

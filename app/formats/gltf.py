@@ -62,6 +62,15 @@ class Gltf:
             values = np.maximum(values.astype(np.float64) / scale, -1.0)
         return values
 
+    def view(self, view: int) -> bytes:
+        """The bytes of a buffer view."""
+        entry = self.items("bufferViews")[view]
+        start, size = int(entry.get("byteOffset", 0)), int(entry["byteLength"])
+        data = self.buffers[entry.get("buffer", 0)]
+        if start < 0 or size < 0 or start + size > len(data):
+            raise ValueError("view outside its buffer")
+        return bytes(data[start : start + size])
+
     def _view(self, view: int, offset: int, kind: str, width: int, count: int) -> NDArray[Any]:
         entry = self.items("bufferViews")[view]
         data = self.buffers[entry.get("buffer", 0)]
@@ -168,6 +177,14 @@ class GltfWriter:
         self._parts.append(padded)
         self._size += len(padded)
         return len(self._accessors) - 1
+
+    def add_bytes(self, data: bytes) -> int:
+        """Add a view of plain bytes, such as a picture, and give its number."""
+        self._views.append({"buffer": 0, "byteOffset": self._size, "byteLength": len(data)})
+        padded = data + b"\0" * (-len(data) % 4)
+        self._parts.append(padded)
+        self._size += len(padded)
+        return len(self._views) - 1
 
     def write(self, path: Path) -> None:
         """Write the file."""

@@ -17,11 +17,7 @@ Columns = dict[str, Any]
 
 def read_ply(data: bytes, name: str) -> MeshFile:
     """Read a PLY mesh; see read_mesh."""
-    header = read_header(data, name)
-    try:
-        tables = _text(data, header) if header.form == "ascii" else _binary(data, header)
-    except (ValueError, IndexError, OverflowError) as error:
-        raise InputError(f"The PLY file {name} is cut off or damaged: get a whole copy of it.") from error
+    tables = read_tables(data, name)
     vertex = tables.get("vertex", {})
     if not all(axis in vertex for axis in "xyz"):
         raise InputError(f"The PLY file {name} has no vertices with x, y and z.")
@@ -34,10 +30,19 @@ def read_ply(data: bytes, name: str) -> MeshFile:
     if lists is None:
         faces = np.zeros((0, 3), np.int64)
     elif isinstance(lists, np.ndarray):
-        faces = _split(lists.astype(np.int64))
+        faces = fans(lists.astype(np.int64))
     else:
         faces = fan(lists)
     return MeshFile(vertices, to_int32(faces, name), _colors(vertex), None, name)
+
+
+def read_tables(data: bytes, name: str) -> dict[str, Columns]:
+    """All elements of a PLY by name, each with its properties by name: a column, or a list where they are lists."""
+    header = read_header(data, name)
+    try:
+        return _text(data, header) if header.form == "ascii" else _binary(data, header)
+    except (ValueError, IndexError, OverflowError) as error:
+        raise InputError(f"The PLY file {name} is cut off or damaged: get a whole copy of it.") from error
 
 
 def write_ply(
@@ -78,7 +83,8 @@ def write_ply(
         file.write(triangles.tobytes())
 
 
-def _split(polygons: NDArray[np.int64]) -> NDArray[np.int64]:
+def fans(polygons: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Triangles (m, 3) of polygons of equally many corners (k, n), each split into a fan from its first corner."""
     corners = polygons.shape[1]
     if corners < 3:
         return np.zeros((0, 3), np.int64)
@@ -133,7 +139,7 @@ def _text_columns(rows: list[list[bytes]], element: Element) -> Columns:
             values = row[place + 1 : place + 1 + count]
             if count < 0 or len(values) < count:
                 raise ValueError(item.name)
-            columns[item.name].append([int(float(value)) for value in values] if item.kind[0] != "f" else [])
+            columns[item.name].append([float(value) if item.kind[0] == "f" else int(float(value)) for value in values])
             place += 1 + count
     return columns
 

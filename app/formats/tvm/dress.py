@@ -120,7 +120,9 @@ def _texture(
 
 
 def _colours(mesh: MeshFile, names: list[str], library: dict[str, Material]) -> NDArray[np.uint8] | None:
-    """Each vertex in the colour of the last face that names it; white where no material says."""
+    """Each vertex in the colour of the last face that names it, white where no material says; none beside pictures."""
+    if any(library.get(name, (None, None))[1] is not None for name in set(names)):
+        return None
     stated = {name: colour for name, (colour, picture) in library.items() if colour is not None and picture is None}
     if not stated or len(names) != len(mesh.faces) or not set(names) & set(stated):
         return None

@@ -9,19 +9,24 @@ from app.formats.images import natural_key, read_bytes
 from app.formats.meshes import read_mesh
 from app.formats.meshfile import check_mesh
 from app.formats.obj import read_obj
+from app.formats.ply import read_ply
 from app.formats.tvm.dress import obj_dress
 from app.formats.tvm.frames import FrameMesh, MeshFrames
+from app.formats.tvm.glb_dress import read_dressed_glb
+from app.formats.tvm.pictures import PictureRoom
+from app.formats.tvm.ply_dress import ply_texture
 from imitation.errors import InputError
 
 SUFFIXES = (".ply", ".obj", ".off", ".stl", ".glb")
 
 
 class FolderFrames(MeshFrames):
-    """Files of one format; colours, and for OBJ materials and textures, come along."""
+    """Files of one format; colours and, for PLY, OBJ and GLB, textures come along, for OBJ materials too."""
 
     def __init__(self, folder: Path) -> None:
         self.paths = frame_files(folder)
         self.folder, self.name = folder, folder.name
+        self._room = PictureRoom()
         suffix = self.paths[0].suffix.lower()
         self.form = f"{suffix[1:].upper()} folder"
         if suffix == ".glb":
@@ -33,10 +38,16 @@ class FolderFrames(MeshFrames):
 
     def _frame(self, frame: int) -> FrameMesh:
         path = self.paths[frame]
-        if path.suffix.lower() != ".obj":
+        kind = path.suffix.lower()
+        if kind not in (".obj", ".ply", ".glb"):
             mesh = read_mesh(path)
             return FrameMesh(mesh.vertices, mesh.faces, mesh.colors)
         data = read_bytes(path).tobytes()
+        if kind == ".glb":
+            return read_dressed_glb(path, data, self._room)
+        if kind == ".ply":
+            mesh = check_mesh(read_ply(data, path.name))
+            return FrameMesh(mesh.vertices, mesh.faces, mesh.colors, ply_texture(data, path, mesh))
         mesh = check_mesh(read_obj(data, path.name))
         colours, texture = obj_dress(data, path, mesh)
         return FrameMesh(mesh.vertices, mesh.faces, mesh.colors if mesh.colors is not None else colours, texture)

@@ -21,7 +21,9 @@ from app.formats.off import write_off
 from app.formats.ply import write_ply
 from app.formats.sequence import vertex_normals
 from app.formats.tvm.frames import FrameMesh, Texture
+from app.formats.tvm.glb_dress import write_dressed_glb
 from app.formats.tvm.painting import painted
+from app.formats.tvm.ply_dress import write_dressed_ply
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
@@ -41,8 +43,8 @@ def write_mesh_frames(
 ) -> None:
     """Write frames one after another; whole or not at all.
 
-    "ply", "obj", "off" and "glb" make a folder of files ``name_0000.ply``; "npz" makes one file. OBJ keeps texture
-    coordinates and copies the pictures as they are; the other forms have the texture's colours at the vertices.
+    "ply", "obj", "off" and "glb" make a folder of files ``name_0000.ply``; "npz" makes one file. PLY, OBJ and GLB keep
+    texture coordinates and the pictures as they are; OFF and npz have the texture's colours at the vertices.
 
     Parameters
     ----------
@@ -73,6 +75,13 @@ def _write_one(file: Path, mesh: FrameMesh, form: FrameForm) -> None:
             _write_textured(file, mesh, mesh.texture)
         else:
             write_obj(file, vertices, faces, mesh.colours)
+        return
+    if mesh.texture is not None and form == "glb":
+        write_dressed_glb(file, mesh, mesh.texture)
+        return
+    if mesh.texture is not None and form == "ply":
+        names = [_copied(image, file.parent) for image in mesh.texture.images]
+        write_dressed_ply(file, vertices, faces, mesh.colours, mesh.texture, names)
         return
     colours = painted(mesh).colours
     if form == "ply":

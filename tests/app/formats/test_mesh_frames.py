@@ -122,8 +122,8 @@ def test_textures_pass_through_untouched(tmp_path: Path) -> None:
     coloured = painted(mesh).colours
     assert coloured is not None
     assert coloured.tolist() == [[201, 0, 0], [0, 0, 201], [201, 0, 0]]
-    write_mesh_frames(tmp_path / "ply", frames, form="ply", fps=25, count=2)
-    np.testing.assert_array_equal(open_mesh_frames(tmp_path / "ply")[1].colours, coloured)  # type: ignore[arg-type]
+    write_mesh_frames(tmp_path / "off", frames, form="off", fps=25, count=2)
+    np.testing.assert_array_equal(open_mesh_frames(tmp_path / "off")[1].colours, coloured)  # type: ignore[arg-type]
 
 
 def test_material_colours(tmp_path: Path) -> None:
