@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from app.stages.job import Job
+from app.stages.stage import Stage
 from app.window.project import Project
 
 LABEL = "Measuring the background"
@@ -47,14 +48,15 @@ def background_state(project: Project) -> BackgroundState:
         return BackgroundState("running", f"being measured, {text}", f"{LABEL}: {text}.", "stop")
     if state == "fresh":
         if project.state(stages.world) == "fresh":
-            maps = project.result(depth)
-            count = f"{len(maps)} key frames" if maps is not None else "key frames"
+            count = _key_frames(project, depth)
             document = project.document
             offer = document.world.ground == "local" and any(track.contacts for track in document.tracks)
-            return BackgroundState("done", count, f"Measured in {count}.", "contacts" if offer else "")
+            return BackgroundState("done", count, f"Measured: {count}.", "contacts" if offer else "")
         return BackgroundState("stale", "the ground is missing", "The ground has to be laid again.")
-    if state == "failed":
-        reason = project.session.runner.why_failed(depth) or "It could not be measured."
+    if state == "running":
+        return BackgroundState("running", "being measured", f"{LABEL}.", "")
+    reason = why_unmeasured(project)
+    if reason:
         return BackgroundState("failed", reason, reason)
     if state == "blocked":
         reason = depth.why_blocked() or "Something is missing."
@@ -65,6 +67,21 @@ def background_state(project: Project) -> BackgroundState:
     if state == "stale":
         return BackgroundState("stale", "out of date", "What it was measured from has changed.")
     return BackgroundState("optional", "not measured", "It has not been measured yet.")
+
+
+def why_unmeasured(project: Project) -> str:
+    """Why measuring failed, in one sentence; empty where it did not, or was not tried."""
+    depth, runner = project.session.stages.depth, project.session.runner
+    if depth in project.session.cache:
+        return ""
+    return next((reason for stage in depth.closure() if (reason := runner.why_failed(stage))), "")
+
+
+def _key_frames(project: Project, depth: Stage) -> str:
+    """How many frames were measured: the plan says so, the maps themselves are large and stay where they are."""
+    plan = next((each for each in depth.needs if each.name == "depth/plan"), None)
+    found = project.result(plan) if plan is not None else None
+    return f"{len(found.keys)} key frames" if found is not None else "measured"
 
 
 def measure(project: Project) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-import attrs
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
@@ -182,9 +181,7 @@ def test_what_cannot_be_measured_gives_its_reason_and_what_to_do_instead(
     def refuse(*_: object, **__: object) -> None:
         raise NoSolution(reason)
 
-    monkeypatch.setattr("imitation.depth.background_depth", refuse)
-    depth = attrs.evolve(project.session.stages.depth, compute=refuse, needs=())
-    project.session.stages._made["depth"] = depth
+    monkeypatch.setattr("app.stages.depth._solver", refuse)
     shell.video.background.ask("measure")
     wait_for(lambda: not project.progress)
     settle()

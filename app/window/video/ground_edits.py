@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.model.edits import scene
+from app.window.background_state import why_unmeasured
 from app.window.project import Project
 
 FLAT = ("static", "rotation", "planar")
@@ -39,22 +40,15 @@ def fallbacks(project: Project) -> tuple[Fallback, ...]:
         return ()
     if path.verdict == "failed":
         return (STILL,) if document.camera.source == "solve" else ()
-    if document.world.ground != "local" or not (path.verdict in FLAT or _unmeasured(project)):
+    if document.world.ground != "local" or not (path.verdict in FLAT or why_unmeasured(project)):
         return ()
     return (*((POINTS,) if len(path.points) >= FEWEST else ()), PLANE, DEPTH)
-
-
-def _unmeasured(project: Project) -> str:
-    """Why the background could not be measured; empty where it was, or was not tried."""
-    session = project.session
-    failed = project.state(session.stages.depth) == "failed"
-    return (session.runner.why_failed(session.stages.depth) or "") if failed else ""
 
 
 def lead(project: Project) -> str:
     """Why something has to be assumed."""
     path = project.result(project.session.stages.cameras)
-    if path is not None and path.verdict != "failed" and (reason := _unmeasured(project)):
+    if path is not None and path.verdict != "failed" and (reason := why_unmeasured(project)):
         return reason
     words = {
         "failed": "The cameras could not be solved.",
