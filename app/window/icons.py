@@ -99,8 +99,8 @@ NAMES = {
     "follow": "run",
     "matrix": "view-grid-outline",
     "textons": "view-week-outline",
-    "unfolded": "chevron-down",
-    "folded": "chevron-right",
+    "unfolded": "menu-down",
+    "folded": "menu-right",
     "right": "check",
     "add_sequence": "folder-plus-outline",
 }
