@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.actions.performing_playback import ready
+from app.actions.session import Session
 from app.formats.tvm import FrameMesh
 from app.window.performance.player import Dropped, FrameReader, ahead
 from app.window.performance.preview_notes import cut_near
@@ -155,6 +156,18 @@ def test_an_edit_keeps_the_picture_until_the_next_is_there(composed: Shell) -> N
     composed.project.edit(performance.set_keys, keys)
     quiet(composed)
     wait_for(lambda: page.preview.frame is not None)
+
+
+def test_an_empty_project_says_what_comes_here(open_shell: Callable[[Session], Shell]) -> None:
+    """Without sequences there is a sentence instead of a view, and nothing to press."""
+    shell = open_shell(Session.new())
+    QTest.keyClick(shell, Qt.Key.Key_F3)
+    preview = shell.pages.in_sight.preview
+    assert preview.view.waiting.isVisible()
+    assert preview.view.waiting.text() == "Add a sequence to see it here."
+    assert preview.view.viewport is None
+    assert not preview.play_button.isEnabled()
+    assert not any(button.isEnabled() for button in preview.mode_buttons.values())
 
 
 # the thread that reads ahead -------------------------------------------------------------------------------------

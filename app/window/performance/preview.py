@@ -58,6 +58,7 @@ class Preview(Panel):
         self.column.addWidget(self.view, 1)
         self.column.addWidget(self._footer())
         self._connect()
+        self._show_nothing()
 
     def _header(self) -> None:
         self.ghost_button = toggle("ghosts", "Ghosts", lambda _: self._again(), key="G")
@@ -120,10 +121,16 @@ class Preview(Panel):
         """Show what the state says; frames that are still right stay."""
         source = wanted_source(self.state, self.mode)
         performing = self.state.shows == "performance"
+        there = bool(source) or (performing and self.state.frame_count > 0)
         for mode, each in self.mode_buttons.items():
-            each.setEnabled(performing and (mode != "blended" or self.state.document.performance.blend))
+            each.setEnabled(
+                performing and bool(source) and (mode != "blended" or self.state.document.performance.blend)
+            )
+        self.play_button.setEnabled(there)
         self.header.caption.setText(self._caption())
         if source == self._source:
+            if not source and self.frame is None:
+                self._show_nothing()
             self._over()
             return
         waiting = bool(not source and performing and self.state.frame_count)
@@ -140,6 +147,8 @@ class Preview(Panel):
                 self.view.say(READING)
 
     def _caption(self) -> str:
+        if not self.state.document.sequences:
+            return ""
         if self.state.shows == "performance":
             return "composed performance"
         found = [each.name for each in self.state.document.sequences if each.id == self.state.sequence_id]
@@ -151,6 +160,7 @@ class Preview(Panel):
             self.stage.clear()
             self.stage.begin()
         self.view.say(NO_PERFORMANCE if self.state.document.sequences else NO_SEQUENCE)
+        self.play_button.setEnabled(False)
         self.rate.setText("")
 
     def _opened(self, count: int) -> None:
