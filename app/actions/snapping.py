@@ -112,6 +112,28 @@ def contact_words(session: Session, track_id: str, frame: int) -> str:
     return f"{depth:.2f} {unit} away{off}: {how}"
 
 
+def off_words(session: Session, track_id: str, frame: int, surface: DepthMap) -> str:
+    """How far a track's contact lies from the measured surface, along its ray; empty where either is not known."""
+    found, pixel = placed_contact(session, track_id, frame), anchor_pixel(session, track_id, frame)
+    if found is None or pixel is None:
+        return ""
+    contact, world = found
+    try:
+        there = snap(surface, pixel)
+    except NoSolution:
+        return ""
+    away = float(surface.camera.depth(contact.place)) - there.depth
+    side = "behind" if away > 0 else "before"
+    if not world.metric:
+        share = 100 * abs(away) / max(there.depth, 1e-9)
+        return (
+            f"{share:.1f} % of the distance {side} the measured surface" if share >= 0.05 else "on the measured surface"
+        )
+    if abs(away) < 0.0005:
+        return "on the measured surface"
+    return f"{1000 * abs(away):.0f} mm {side} the measured surface"
+
+
 def anchor_pixel(session: Session, track_id: str, frame: int) -> tuple[float, float] | None:
     """Where the anchor of a track's contact is seen in a frame; None where it was not placed yet, or lies behind."""
     found = placed_contact(session, track_id, frame)

@@ -261,11 +261,15 @@ def test_s_puts_the_contact_where_the_point_is_seen(measured: Shell) -> None:
     info = measured.video.inspector.contact_info
     assert info.isVisible()
     assert "put there by hand" in info.text.text()
+    QTest.keyClick(measured, Qt.Key.Key_C)
+    wait_for(lambda: "the measured surface" in info.text.text())
     QTest.keyClick(measured, Qt.Key.Key_S)
     wait_for(lambda: project.session.history.undo_label == f"Place contact of {track.name}, frame {frame}")
     contact = next(each for each in project.document.track(track.id).contacts if frame in each.span)
     assert np.linalg.norm(np.array(contact.place) - true_ground(place, frame)) < 0.02
-    settle()
+    measured.project.start("Placing contacts", project.session.stages.contacts(track.id))
+    wait_for(lambda: not project.progress, 60)
+    wait_for(lambda: "; on the measured surface" in info.text.text() or "; 1 mm" in info.text.text())
     measured.video.inspector.ensureWidgetVisible(info.free)
     QTest.mouseClick(info.free, LEFT)
     assert next(each for each in project.document.track(track.id).contacts if frame in each.span).place is None

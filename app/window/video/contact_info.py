@@ -15,12 +15,16 @@ UNPLACED = "not placed yet"
 
 
 class ContactInfo(QWidget):
-    """Hidden where the point has no contact in the frame. ``asked`` names what is wanted: snap or free."""
+    """Hidden where the point has no contact in the frame. ``asked`` names what is wanted: snap or free.
+
+    off : how far the contact is from the measured surface, in words, where that is known.
+    """
 
     asked = Signal(str)
 
     def __init__(self) -> None:
         super().__init__()
+        self.off = ""
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(6)
@@ -46,6 +50,7 @@ class ContactInfo(QWidget):
             return
         first, last = contact.span.first, contact.span.last
         where = contact_words(project.session, track.id, frame) or UNPLACED
-        self.text.setText(f"Contact {first} – {last}: {where}.")
+        off = f"; {self.off}" if self.off else ""
+        self.text.setText(f"Contact {first} – {last}: {where}{off}.")
         self.snap.setEnabled(background_state(project).ready)
         self.free.setEnabled(contact.place is not None)

@@ -51,6 +51,13 @@ class ContactSnapping:
         world = project.result(project.session.stages.world)
         return SnapMark(place, snapping.distance_words(found, world), found.disc, before)
 
+    def off(self, frame: int) -> str:
+        """How far the selected point's contact lies from the surface; empty where that is not known."""
+        project, surface = self.background.project, self.background.surface(frame)
+        if project is None or surface is None or not project.track_id:
+            return ""
+        return snapping.off_words(project.session, project.track_id, frame, surface)
+
     def put(self, frame: int, track_id: str, place: Place) -> str:
         """Put the contact of a track onto the surface at a picture place; marks one where there is none.
 

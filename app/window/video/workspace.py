@@ -223,7 +223,9 @@ class VideoWorkspace(Workspace):
             mark = next((each for each in self._marks if each.name == shown.hovered), None)
             place = mark.at(self.frame) if mark is not None else None
             held = (shown.hovered, place) if place is not None else None
-        shown.backdrop = self.background.show(self.frame, shown=shown.background, surface=held is not None)
+        sounded = held is not None or (self.tool == "contact" and bool(self.project and self.project.track_id))
+        shown.backdrop = self.background.show(self.frame, shown=shown.background, surface=sounded)
+        self.inspector.contact_info.off = self.snapping.off(self.frame) if sounded else ""
         shown.snap = self.snapping.preview(self.frame, *held) if held is not None else None
 
     def _show_windows(self) -> None:
