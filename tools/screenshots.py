@@ -230,6 +230,34 @@ def _character(shell: Shell, camera: Camera) -> None:
         camera.live(1)
         camera.take("character-edited")
         shell.do("ghosts")
+        _judged(shell, camera)
+
+
+def _judged(shell: Shell, camera: Camera) -> None:
+    """The edited motion as it is judged: camera and side at once, stretch, the paper's other ways, and its placing."""
+    mesh = shell.character.mesh
+    shell.do("split")
+    camera.live(1)
+    camera.take("character-split")
+    shell.do("split")
+    shell.do("look_orbit")
+    mesh.bar.choose_heat("stretch")
+    camera.live(5, lambda: mesh.heat is not None)
+    camera.take("character-heat")
+    mesh.bar.choose_heat("")
+    mesh.bar.choose_all(True)
+    camera.live(2)
+    camera.live(120, lambda: _quiet(shell))
+    camera.live(1)
+    camera.take("character-compare")
+    mesh.bar.choose_all(False)
+    shell.do("gizmo_move")
+    camera.live(5, lambda: shell.character.frame == 0)
+    shell.do("look_camera")
+    camera.live(1)
+    camera.take("character-place")
+    shell.do("cancel")
+    shell.do("look_orbit")
 
 
 if __name__ == "__main__":

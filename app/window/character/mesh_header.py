@@ -122,8 +122,8 @@ class MeshHeader(QWidget):
             action = self._entry(menu, text, name in self.variants)
             action.toggled.connect(lambda on, name=name: self._vary(name, on))
         menu.addSeparator()
-        menu.addAction("All of them", lambda: self._vary_all(True))
-        menu.addAction("None", lambda: self._vary_all(False))
+        menu.addAction("All of them", lambda: self.choose_all(True))
+        menu.addAction("None", lambda: self.choose_all(False))
         return menu
 
     def heat_menu(self) -> QMenu:
@@ -140,7 +140,8 @@ class MeshHeader(QWidget):
         self.variants = [each for each in (BEFORE, *COMPARISONS) if each in wanted]
         self.compared.emit(list(self.variants))
 
-    def _vary_all(self, on: bool) -> None:
+    def choose_all(self, on: bool) -> None:
+        """Compare with everything there is, or with nothing."""
         self.variants = [BEFORE, *COMPARISONS] if on else []
         self.compared.emit(list(self.variants))
 

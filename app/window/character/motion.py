@@ -102,6 +102,11 @@ class Motion:
         if frame in self.held and character is not None:
             self._meant[frame] = _meaning(character, frame)
 
+    def settle_open(self, frame: int, character: Character | None) -> None:
+        """The same where what is held stands for nothing yet."""
+        if frame not in self._meant:
+            self.settle(frame, character)
+
     def drop(self, frame: int) -> None:
         """Hold nothing in a frame."""
         self.held.pop(frame, None)

@@ -106,6 +106,9 @@ class Placing(QObject):
         if character is None or self.project.frame != 0:
             return
         now = character.alignment
+        if alignment == now:
+            self.released()
+            return
         if self._before is None:
             shown = self.motion.vertices(0)
             self._before = None if shown is None else np.array(shown)
@@ -144,6 +147,7 @@ class Placing(QObject):
         """After an edit of the placement: forget what was tried, and find the new place."""
         if [each.alignment for each in before.characters] != [each.alignment for each in after.characters]:
             self._before = None
+            self.motion.settle_open(0, self._character())
             self.find()
 
     def find(self) -> None:
