@@ -6,7 +6,9 @@ from contextlib import closing
 from pathlib import Path
 
 import click
+import numpy as np
 
+from app.actions.marks import character_named
 from app.actions.session import Session
 from app.commands.console import Console
 from app.commands.project import PATH, PROJECT
@@ -16,8 +18,9 @@ from app.commands.project import PATH, PROJECT
 @PROJECT
 @click.option("--write", "folder", type=PATH, help="Write the maps: false-colour PNG files and depth.npz.")
 @click.option("--mesh", "mesh", type=PATH, help="Write the background as a mesh: .ply, .obj or .glb.")
+@click.option("--meeting", help="Say how far this character goes into the background, frame by frame.")
 @click.pass_obj
-def depth(console: Console, project: Path, folder: Path | None, mesh: Path | None) -> None:
+def depth(console: Console, project: Path, folder: Path | None, mesh: Path | None, meeting: str | None) -> None:
     """Measure the depth of the background in a sparse set of frames."""
     from app.actions.backgrounds import solved_background, summary, write_background_mesh, write_depth
 
@@ -39,6 +42,16 @@ def depth(console: Console, project: Path, folder: Path | None, mesh: Path | Non
             vertices, triangles = write_background_mesh(session, mesh)
             values["mesh"] = {"file": str(mesh), "vertices": vertices, "triangles": triangles}
             lines.append(f"Wrote {mesh}: {vertices} vertices, {triangles} triangles")
+        if meeting is not None:
+            character = character_named(session.document, meeting)
+            (found,) = console.compute(session, "Meeting the background", (session.stages.penetration(character.id),))
+            worst = int(np.argmax(found.depth))
+            values["penetration"] = {"depth": found.depth, "share": found.share, "tolerance": found.tolerance}
+            lines.append(
+                f"{meeting} is up to {found.depth[worst]:.3f}{unit} behind the background's surface (frame {worst}), "
+                f"in {int((found.depth > found.tolerance).sum())} of {len(found.depth)} frames by more than "
+                f"{found.tolerance:.3f}{unit}"
+            )
         console.answer(values, lines)
 
 

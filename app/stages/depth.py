@@ -91,7 +91,7 @@ def depth(document: Document) -> Stage:
         return Stage("depth", LABEL, _depth, blocked=tracking.NO_CLIP)
     needs: tuple[Stage, ...] = (plan(document), scene.cameras(document), tracking.masks(document))
     needs += tuple(sketch(document, str(k), "second") for k in range(slots(clip.frame_count)))
-    return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=2, weight=2.0)
+    return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=3, weight=2.0)
 
 
 def slots(frames: int) -> int:

@@ -15,6 +15,7 @@ from imitation.geometry.projection import Camera
 
 Picture = NDArray[np.uint8]
 SUPPORT = 2.5  # grey levels of disagreement that one more key frame with the same depth outweighs
+AGAINST = 8.0  # grey levels that a key frame counts against a depth that it sees through
 UNSEEN = 40.0  # disagreement of a depth that fewer than two frames can judge
 
 
@@ -64,18 +65,25 @@ def choose_depth(
     poses: Sequence[Camera],
     scale: NDArray[np.float32],
     tolerance: float,
+    known: NDArray[np.float32],
+    knowing: Sequence[Camera],
 ) -> NDArray[np.float32]:
     """Choose for each pixel (k,) the inverse depth at which the frames that see it agree best in colour.
+
+    Where colours do not tell, on a weak texture, what key frames see through cannot be there.
 
     Parameters
     ----------
     loose, firm : (k, m) what key frames say, all of it and what others confirm; 0 where nothing.
     tolerance : difference of inverse depths that counts as the same.
+    known, knowing : (n, h, w) inverse depths of key frames, 0 where none, and their cameras.
     """
     maps = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in poses])
+    keys = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in knowing])
     result = np.zeros(len(rows), np.float32)
     _choose(
-        rows, columns, loose, firm, maps.A, maps.b, stack, hidden, scale, np.float32(tolerance), result
+        rows, columns, loose, firm, maps.A, maps.b, stack, hidden, scale, np.float32(tolerance), known, keys.A, keys.b,
+        result,
     )  # fmt: skip
     return result
 
@@ -140,9 +148,32 @@ def _median(values: Any, count: int, channel: int, work: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _seen_through(x: int, y: int, w: Any, A: Any, b: Any, known: Any, tolerance: Any) -> Any:
+    """How many key frames see something farther at a point, all round its place."""
+    count = np.float32(0)
+    height, width = known.shape[1], known.shape[2]
+    for n in range(known.shape[0]):
+        z = A[n, 2, 0] * x + A[n, 2, 1] * y + A[n, 2, 2] + w * b[n, 2]
+        if z <= 0:
+            continue
+        u = int(np.rint((A[n, 0, 0] * x + A[n, 0, 1] * y + A[n, 0, 2] + w * b[n, 0]) / z))
+        v = int(np.rint((A[n, 1, 0] * x + A[n, 1, 1] * y + A[n, 1, 2] + w * b[n, 1]) / z))
+        if u < 1 or v < 1 or u >= width - 1 or v >= height - 1:
+            continue
+        nearest, whole = np.float32(0), True
+        for j in range(v - 1, v + 2):
+            for i in range(u - 1, u + 2):
+                whole = whole and known[n, j, i] > 0
+                nearest = max(nearest, known[n, j, i])
+        if whole and nearest < w / z - 2 * tolerance:
+            count += np.float32(1)
+    return count
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _choose(
     rows: Any, columns: Any, loose: Any, firm: Any, A: Any, b: Any, stack: Any, hidden: Any, scale: Any,
-    tolerance: Any, result: Any,
+    tolerance: Any, known: Any, key_A: Any, key_b: Any, result: Any,
 ) -> None:  # fmt: skip
     sources = loose.shape[1]
     values, work = np.empty((8, 3), np.float32), np.empty(8, np.float32)
@@ -180,6 +211,8 @@ def _choose(
                 cost /= 3 * count
                 cost *= np.float32(1) + np.float32(1) / count
             cost -= np.float32(SUPPORT) * min(support, np.float32(4))
+            against = _seen_through(columns[k], rows[k], middle, key_A, key_b, known, tolerance)
+            cost += np.float32(AGAINST) * min(against, np.float32(4))
             if cost < best:
                 best = cost
                 result[k] = middle

@@ -191,10 +191,15 @@ class Background:
         self, source: DepthMap, frame: int, least: int, wanted: NDArray[np.bool_] | None = None
     ) -> NDArray[np.float32]:
         """Inverse depth (h, w) that a key frame gives to another frame's wanted pixels."""
+        inverse = self._known(source, least)
+        return projected_inverse(inverse, source.camera, self.camera(frame), self.pictures.size, wanted)
+
+    def _known(self, source: DepthMap, least: int) -> NDArray[np.float32]:
+        """Inverse depth (h, w) of a key frame, 0 where it has none of this confidence; kept."""
         key = source.frame, least
         if key not in self._inverse:
             self._inverse[key] = inverse_of(source, least)
-        return projected_inverse(self._inverse[key], source.camera, self.camera(frame), self.pictures.size, wanted)
+        return self._inverse[key]
 
     def _map(self, frame: int, inverse: NDArray[np.float32], support: NDArray[np.uint8]) -> DepthMap:
         with np.errstate(divide="ignore"):
@@ -236,7 +241,10 @@ class Background:
             np.stack([self._brought(each, frame, least, wanted)[rows, columns] for each in sources], axis=1)
             for least in (0, 3)
         )
-        inverse = choose_depth(rows, columns, loose, firm, camera, stack, hidden, poses, scale, self.tolerance)
+        known, knowing = np.stack([self._known(each, 1) for each in sources]), [each.camera for each in sources]
+        inverse = choose_depth(
+            rows, columns, loose, firm, camera, stack, hidden, poses, scale, self.tolerance, known, knowing
+        )
         inverse = _voted(inverse, rows, columns, size, self.tolerance)
         colour, seen = gather(rows, columns, inverse, camera, stack, hidden, poses, scale, NEAREST)
         return inverse, colour, seen

@@ -23,6 +23,7 @@ from imitation.errors import InputError
 from imitation.progress import Progress, part, silent
 
 PLANES, PLANES_LARGE = 144, 160
+AVERAGED = 8  # other maps, the nearest in time, that a map is averaged with where they agree
 LEADERS = 10  # other maps, the nearest in time, that lead the second pass
 LARGE = 700  # pixels on the longest side from which there are more planes
 
@@ -113,6 +114,7 @@ class DepthSolver:
             1.5 * sketch.step,
         )  # fmt: skip
         inverse, count = self._filled(sketch, count, others)
+        inverse = self._averaged(inverse, sketch, others)
         inverse = resized(inverse, pictures.full, 3 * sketch.step)
         confidence = cv2.resize(count, pictures.full, interpolation=cv2.INTER_NEAREST_EXACT)
         depth = (1 / inverse).astype(np.float32)
@@ -121,6 +123,23 @@ class DepthSolver:
             depth[hidden], confidence[hidden] = np.nan, 0
         middle = float(np.median(sketch.inverse))
         return DepthMap(frame, depth, confidence, pictures.cameras[frame], sketch.step / middle)
+
+    def _averaged(self, inverse: NDArray[np.float32], sketch: Sketch, others: Sequence[Sketch]) -> NDArray[np.float32]:
+        """The mean of a map and of what agrees with it in the maps nearest in time.
+
+        What disagrees does not vote: brought from another frame, near surfaces reach over their edges.
+        """
+        pictures = self.pictures
+        near = sorted(others, key=lambda each: (abs(each.frame - sketch.frame), each.frame))[:AVERAGED]
+        total, number = inverse.copy(), np.ones_like(inverse)
+        for each in near:
+            layer = projected_inverse(
+                each.measured, pictures.camera(each.frame), pictures.camera(sketch.frame), pictures.size
+            )
+            same = (layer > 0) & (np.abs(layer - inverse) <= 1.5 * sketch.step)
+            total[same] += layer[same]
+            number[same] += 1
+        return total / number
 
     def _filled(
         self, sketch: Sketch, count: NDArray[np.uint8], others: Sequence[Sketch]

@@ -147,3 +147,14 @@ def test_depth_is_written_as_pictures_arrays_and_meshes(measured: Path, tmp_path
     assert ply.colors.std() > 5
     np.testing.assert_allclose(np.ptp(ply.vertices, axis=0), np.ptp(glb.vertices, axis=0), rtol=1e-3)
     assert run(["--quiet", "depth", str(measured), "--mesh", str(tmp_path / "b.xyz")]) == BAD_INPUT
+
+
+def test_a_character_meets_the_background(measured: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A figure a frame; a subject that walks on the ground is hardly in it."""
+    capsys.readouterr()
+    assert run(["--json", "depth", str(measured), "--meeting", "subject"]) == DONE
+    told = json.loads(capsys.readouterr().out)["penetration"]
+    assert len(told["depth"]) == len(told["share"]) == FRAMES
+    assert min(told["depth"]) >= 0
+    assert np.median(told["share"]) < 0.2
+    assert run(["--quiet", "depth", str(measured), "--meeting", "nobody"]) == BAD_INPUT
