@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 NO_SEQUENCE = "Add a sequence to see it here."
 NO_PERFORMANCE = "Choose motions in the graph: what they make is played here."
+NO_PATH = "There is no path through the key motions: the timeline says what would help."
+COMPOSING = "The performance is being composed…"
 READING = "Reading the frames…"
 ASIDE = 0.7
 """Radians from the performer's front to where one looks from at first."""
@@ -121,11 +123,9 @@ class Preview(Panel):
         """Show what the state says; frames that are still right stay."""
         source = wanted_source(self.state, self.mode)
         performing = self.state.shows == "performance"
-        there = bool(source) or (performing and self.state.frame_count > 0)
+        there = bool(source) or (performing and self.frame is not None and self._being_composed())
         for mode, each in self.mode_buttons.items():
-            each.setEnabled(
-                performing and bool(source) and (mode != "blended" or self.state.document.performance.blend)
-            )
+            each.setEnabled(performing and there and (mode != "blended" or self.state.document.performance.blend))
         self.play_button.setEnabled(there)
         self.header.caption.setText(self._caption())
         if source == self._source:
@@ -133,8 +133,9 @@ class Preview(Panel):
                 self._show_nothing()
             self._over()
             return
-        waiting = bool(not source and performing and self.state.frame_count)
-        if waiting:
+        if not source and performing and self._being_composed():
+            if self.frame is None:
+                self.view.say(COMPOSING)
             return  # a new path is being placed: the one before stays in sight
         self._source = source
         self._count = 0
@@ -145,6 +146,11 @@ class Preview(Panel):
             self.view.want()
             if self.frame is None:
                 self.view.say(READING)
+
+    def _being_composed(self) -> bool:
+        """Whether a performance is on its way: there are key motions, and nothing speaks against them."""
+        state = self.state
+        return bool(state.document.performance.keys) and state.gap is None and not state.problem
 
     def _caption(self) -> str:
         if not self.state.document.sequences:
@@ -159,7 +165,9 @@ class Preview(Panel):
         if self.stage is not None:
             self.stage.clear()
             self.stage.begin()
-        self.view.say(NO_PERFORMANCE if self.state.document.sequences else NO_SEQUENCE)
+        document = self.state.document
+        words = NO_PATH if document.performance.keys and not self._being_composed() else NO_PERFORMANCE
+        self.view.say(words if document.sequences else NO_SEQUENCE)
         self.play_button.setEnabled(False)
         self.rate.setText("")
 
