@@ -59,10 +59,11 @@ def _motion(painter: QPainter, axis: Axis, motion: StripMotion) -> None:
         box.setRight(axis.x(last + 1) - apart / 2)
         kept = number == motion.kept
         painter.setPen(QPen(look.colour(motion.colour), 1.3) if box.width() > 3 else Qt.PenStyle.NoPen)
-        painter.setBrush(look.colour(motion.colour, 150 if kept else 45))
+        narrow = box.width() < 11
+        painter.setBrush(look.colour(motion.colour, (255 if narrow else 150) if kept else 45))
         painter.drawRoundedRect(box, 3, 3)
-        if kept:
-            star(painter, box.center().x(), box.center().y(), min(6.5, max(box.width() / 2 - 2, 3.0)))
+        if kept and not narrow:
+            star(painter, box.center().x(), box.center().y(), min(6.5, box.width() / 2 - 1.5))
 
 
 def _words(painter: QPainter, bar: QRectF, motion: StripMotion) -> None:
@@ -116,9 +117,10 @@ def _curve(painter: QPainter, axis: Axis, strip: Strip) -> None:
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(look.colour("text"))
     for motion in strip.motions:
-        for first, _ in motion.textons:
+        for first, last in motion.textons:
             if low <= first < high:
-                painter.drawEllipse(QPointF(axis.x(first + 0.5), y(float(curve[first]))), 2.6, 2.6)
+                radius = min(2.6, max(0.16 * (last + 1 - first) * axis.pixels, 1.0))
+                painter.drawEllipse(QPointF(axis.x(first + 0.5), y(float(curve[first]))), radius, radius)
 
 
 def paint_boundary(painter: QPainter, axis: Axis, frame: int, token: str) -> None:
