@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QToolButton
 
 from app.actions.session import Session
 from app.model.edits import performance as edits
+from app.window.performance.graph_view import bow, on_bow
 from app.window.shell import Shell
 from tests.window.clipping import assert_nothing_clipped
 from tests.window.conftest import _move, at, drag, settle, wait_for
@@ -172,6 +173,32 @@ def test_a_node_plays_under_the_mouse(hands: PerformingHands) -> None:
     _move(hands.canvas, at(2, 2), LEFT, Qt.KeyboardModifier.NoModifier)
     assert hands.canvas.hover == -1
     assert not hands.canvas._beat.isActive()
+
+
+def test_a_transition_under_the_mouse_shows_its_two_frames(hands: PerformingHands) -> None:
+    """A card with the frames that meet and what it costs, at an edge of the graph and at a cut of the timeline."""
+    hands.compose(WALK, SQUAT)
+    state, card = hands.page.state, hands.page.crossing
+    start, goal = state.performance.path[:2]
+    marks = {mark.node: mark for mark in hands.canvas.picture.nodes}
+    lens = hands.canvas.lens
+    ends = [lens.pixel(marks[node].x, marks[node].y) for node in (start, goal)]
+    none = Qt.KeyboardModifier.NoModifier
+    _move(hands.canvas, at(*on_bow(*bow(*ends, lens.size / 2), 0.5)), LEFT, none)
+    assert not card.isVisible(), "the mouse may only pass"
+    wait_for(card.isVisible)
+    leave, enter = state.graph.transitions[start, goal]
+    assert [frame for _, frame in card.frames] == [leave, enter]
+    assert f"{state.graph.complete[start, goal]:.2f}" in card.words
+    assert hands.page.rect().contains(card.geometry())
+    _move(hands.canvas, at(2, 2), LEFT, none)
+    assert not card.isVisible()
+    cut = next(cut for cut in state.performance.cuts if cut.kind == "cut")
+    _move(hands.lane, at(hands.lane.axis.x(cut.position) + 3, hands.lane.height() - 14), LEFT, none)
+    wait_for(card.isVisible)
+    assert [frame for _, frame in card.frames] == [cut.leave, cut.enter]
+    _move(hands.lane, at(hands.lane.axis.x(1), 40), LEFT, none)
+    assert not card.isVisible()
 
 
 def test_wheel_and_drag_move_the_view(hands: PerformingHands) -> None:

@@ -212,11 +212,12 @@ def told(joint: Joint) -> str:
     """What a cut is, for a tooltip."""
     kinds = {"cut": "Cut", "wrap": "Round", "loop": "Back to the start"}
     lines = [f"{kinds[joint.kind]}: {joint.names[0]} to {joint.names[1]}, cost {joint.cost:.2f}"]
-    if joint.after is not None:
-        filmed = "" if joint.before is None else f"{joint.before:.2f} times as filmed, "
-        lines.append(f"Its step is {filmed}{joint.after:.2f} times as placed of the largest step within the motions.")
+    known = (("as filmed", joint.before), ("placed", joint.after), ("blended", joint.blended))
+    words = [f"{value:.2f} {how}" for how, value in known if value is not None]
+    if words:
+        lines.append(f"Step {', '.join(words)}; 1 is the largest within the motions.")
     if joint.blended is not None:
-        lines.append(f"With {joint.frames} in-betweens {joint.blended:.2f} times.")
+        lines.append(f"{joint.frames} in-betweens.")
     if joint.hard:
         lines.append("It stays a hard cut.")
     if joint.reason:

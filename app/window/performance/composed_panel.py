@@ -6,8 +6,10 @@ from PySide6.QtCore import QPoint, Qt, QTimer, Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QMenu, QSizePolicy
 
 from app.window import theme
-from app.window.controls import Elided, Panel, button, label, toggle
+from app.window.controls import Elided, Panel, button, label, set_tooltip, toggle
+from app.window.keys import shown_key
 from app.window.performance.blocks import Block, ComposedHit, composed
+from app.window.performance.composed_paint import told
 from app.window.performance.composed_view import ComposedView
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.options_bar import OptionsBar
@@ -57,14 +59,15 @@ class ComposedPanel(Panel):
 
     wanted = Signal(str)
     source_wanted = Signal(bool)
+    crossing = Signal(int, str, QPoint)
 
     def __init__(self, state: PerformanceState, editing: PerformanceEditing, thumbnails: Thumbnails) -> None:
         super().__init__()
         self.state, self.editing = state, editing
         self.transport = Transport()
         self.transport.legend.show_entries(LEGEND)
-        self.transport.buttons["previous_mark"].setToolTip("Previous cut  (Up)")
-        self.transport.buttons["next_mark"].setToolTip("Next cut  (Down)")
+        set_tooltip(self.transport.buttons["previous_mark"], "Previous cut", "previous_mark")
+        set_tooltip(self.transport.buttons["next_mark"], "Next cut", "next_mark")
         self.summary = Elided("", "caption")
         self.summary.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         row = self.transport.layout()
@@ -110,6 +113,7 @@ class ComposedPanel(Panel):
         view.keyed.connect(self._make_key)
         view.menu_wanted.connect(self._menu)
         view.moved.connect(self._place)
+        view.crossing.connect(self._cross)
         self.transport.wanted.connect(self.wanted)
         self.editing.key_changed.connect(self.refresh)
         state.results_changed.connect(self.refresh)
@@ -172,6 +176,10 @@ class ComposedPanel(Panel):
             left = max(min(left, self.view.width() - 4 - wide), LABELS + 4)
             self.note.setGeometry(round(left), RULER + 5, round(wide), height - 10)
 
+    def _cross(self, number: int, where: QPoint) -> None:
+        words = [told(joint) for joint in self.view.shown.joints if joint.number == number]
+        self.crossing.emit(number if words else -1, words[0] if words else "", where)
+
     def _choose_key(self, key: int) -> None:
         self.editing.choose(key)
         found = [
@@ -216,6 +224,6 @@ class ComposedPanel(Panel):
             menu.addAction("Play it once more", lambda: editing.repeat(key, 1))
             if block.repeats > 1:
                 menu.addAction("Play it once less", lambda: editing.repeat(key, -1))
-        menu.addAction("Move it earlier\tCtrl+Left", lambda: editing.move(key, key - 1))
-        menu.addAction("Move it later\tCtrl+Right", lambda: editing.move(key, key + 1))
-        menu.addAction("Remove it\tDel", lambda: editing.remove(key))
+        menu.addAction(f"Move it earlier\t{shown_key('nudge_left')}", lambda: editing.move(key, key - 1))
+        menu.addAction(f"Move it later\t{shown_key('nudge_right')}", lambda: editing.move(key, key + 1))
+        menu.addAction(f"Remove it\t{shown_key('delete')}", lambda: editing.remove(key))

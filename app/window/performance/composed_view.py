@@ -44,7 +44,8 @@ class ComposedView(QWidget):
     """Ruler, blocks and costs. Places among the key motions are counted from 0, -1 is none.
 
     ``chosen_key`` and ``chosen_cut`` say what was clicked, ``reordered`` from where to where, ``repeated`` a place and
-    a step, ``keyed`` asks that the motion of a block, by its number, becomes a key motion.
+    a step, ``keyed`` asks that the motion of a block, by its number, becomes a key motion. ``crossing`` gives the
+    number of the cut under the mouse and a global place, -1 where there is none.
     """
 
     sought = Signal(int)
@@ -55,6 +56,7 @@ class ComposedView(QWidget):
     keyed = Signal(int)
     menu_wanted = Signal(object, QPoint)
     moved = Signal()
+    crossing = Signal(int, QPoint)
 
     def __init__(self) -> None:
         super().__init__()
@@ -62,7 +64,7 @@ class ComposedView(QWidget):
         self.axis = Axis(count=2)
         self.position = 0
         self.key, self.cut, self.hover = -1, -1, -1
-        self.insertion = -1
+        self.insertion = self.joint = -1
         self.thumbnail: Callable[[str, int], QImage | None] = lambda sequence, frame: None
         self._still: QPixmap | None = None
         self._pressed: tuple[ComposedHit, float] | None = None
@@ -225,12 +227,18 @@ class ComposedView(QWidget):
                 self.show_insertion(key_place(self.shown, self.axis, x))
             return
         found = self._find(x, y)
+        self._cross(found.index if found.kind == "joint" else -1, event.globalPosition().toPoint())
         hover = found.index if found.kind in ("block", "more", "fewer") else -1
         if hover != self.hover:
             self.hover = hover
             self._still = None
             self.update()
         self.setCursor(CURSORS.get(found.kind, Qt.CursorShape.ArrowCursor))
+
+    def _cross(self, joint: int, where: QPoint) -> None:
+        if joint != self.joint:
+            self.joint = joint
+            self.crossing.emit(joint, where)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         """Let go: what was carried stands at its new place."""
@@ -265,6 +273,7 @@ class ComposedView(QWidget):
 
     def leaveEvent(self, event: QEvent) -> None:
         """Nothing is under the mouse any more."""
+        self._cross(-1, QPoint())
         if self.hover >= 0:
             self.hover = -1
             self.refresh()
@@ -274,12 +283,10 @@ class ComposedView(QWidget):
         self.menu_wanted.emit(self._find(event.pos().x(), event.pos().y()), event.globalPos())
 
     def event(self, event: QEvent) -> bool:
-        """Say what a cut is."""
+        """Say what a block is."""
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
             found = self._find(event.pos().x(), event.pos().y())
-            joints = [joint for joint in self.shown.joints if found.kind == "joint" and joint.number == found.index]
-            text = composed_paint.told(joints[0]) if joints else self._of_block(found)
-            QToolTip.showText(event.globalPos(), text, self)
+            QToolTip.showText(event.globalPos(), self._of_block(found), self)
             return True
         return super().event(event)
 

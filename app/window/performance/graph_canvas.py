@@ -38,12 +38,14 @@ OWN = {*ARROWS, Qt.Key.Key_Tab, Qt.Key.Key_Backtab, Qt.Key.Key_Return, Qt.Key.Ke
 class GraphCanvas(QWidget):
     """Shows a ``Picture``; ``thumbnail(node, step)`` gives the picture of a node, ``step`` counts while it plays.
 
-    ``carried`` and ``dropped`` give a node and a global place outside of the canvas.
+    ``carried`` and ``dropped`` give a node and a global place outside of the canvas, ``crossing`` the nodes of the
+    transition under the mouse and its global place, -1 where there is none.
     """
 
     chosen = Signal(int)
     appended = Signal(int)
     hovered = Signal(int)
+    crossing = Signal(int, int, QPoint)
     moved = Signal(int, float, float)
     carried = Signal(int, QPoint)
     dropped = Signal(int, QPoint)
@@ -54,6 +56,7 @@ class GraphCanvas(QWidget):
         self.picture = Picture()
         self.lens = Lens()
         self.node = self.hover = -1
+        self.edge = (-1, -1)
         self.step = 0
         self.thumbnail: Callable[[int, int], QImage | None] = lambda node, step: None
         self.told: Callable[[int, int], str] = lambda start, goal: ""
@@ -199,7 +202,16 @@ class GraphCanvas(QWidget):
             return
         mark = node_at(self.picture, self.lens, place.x(), place.y())
         self._set_hover(mark.node if mark is not None else -1)
+        self._cross(place, mark is None, event.globalPosition().toPoint())
         self.setCursor(Qt.CursorShape.PointingHandCursor if mark is not None else Qt.CursorShape.ArrowCursor)
+
+    def _cross(self, place: QPointF, free: bool, where: QPoint) -> None:
+        """Say which transition is under the mouse."""
+        found = edge_at(self.picture, self.lens, place.x(), place.y()) if free else None
+        edge = (found.start, found.goal) if found is not None else (-1, -1)
+        if edge != self.edge:
+            self.edge = edge
+            self.crossing.emit(*edge, where)
 
     def _drag(self, place: QPointF, where: QPoint) -> None:
         if self._panning:
@@ -253,6 +265,7 @@ class GraphCanvas(QWidget):
     def leaveEvent(self, event: QEvent) -> None:
         """Nothing plays any more."""
         self._set_hover(-1)
+        self._cross(QPointF(), False, QPoint())
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         """Ask for the menu of a node; by the keyboard that of the chosen one."""
@@ -275,10 +288,8 @@ class GraphCanvas(QWidget):
         if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and self._key(event):
             return True
         if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
-            edge = edge_at(self.picture, self.lens, event.pos().x(), event.pos().y())
             over = node_at(self.picture, self.lens, event.pos().x(), event.pos().y())
             text = self.told(over.node, -1) if over is not None else ""
-            text = self.told(edge.start, edge.goal) if edge is not None and over is None else text
             QToolTip.showText(event.globalPos(), text, self)
             return True
         return super().event(event)

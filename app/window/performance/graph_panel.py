@@ -7,7 +7,8 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QMenu, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
 from app.window import icons
-from app.window.controls import ErrorBar, Panel, button, icon_button, label
+from app.window.controls import ErrorBar, Panel, button, icon_button, label, set_tooltip
+from app.window.keys import shown_key
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.graph_canvas import GraphCanvas
 from app.window.performance.graph_legend import GraphLegend
@@ -113,14 +114,14 @@ class GraphPanel(Panel):
         self.filter.textChanged.connect(lambda _: self.refresh())
         self.filter.returnPressed.connect(self._find)
         self.forbid = button("Forbid", lambda: self.editing.forbid(self.state.node), name="forbid")
-        self.forbid.setToolTip("Never play the chosen motion, or allow it again  (X)")
+        set_tooltip(self.forbid, "Never play the chosen motion, or allow it again", "hide_point")
         self.key = button("Key motion", lambda: self.editing.append(self.state.node), primary=True, name="key_motion")
         self.key.setToolTip("Add the chosen motion to the timeline  (Enter)")
         self.header.title.setMinimumWidth(self.header.title.sizeHint().width())
         row = self.header.row
         for each in (self.filter, self.forbid, self.key):
             row.addWidget(each)
-        row.addWidget(icon_button("fit", "Show the whole graph", self.canvas.fit, "F"))
+        row.addWidget(icon_button("fit", "Show the whole graph", self.canvas.fit, "fit"))
 
     def _connect(self) -> None:
         canvas, state = self.canvas, self.state
@@ -232,9 +233,8 @@ class GraphPanel(Panel):
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Add as key motion\tEnter", lambda: self.editing.append(node))
         mark = self.canvas.picture.mark(node)
-        menu.addAction(
-            "Allow\tX" if mark is not None and mark.forbidden else "Forbid\tX", lambda: self.editing.forbid(node)
-        )
+        verb = "Allow" if mark is not None and mark.forbidden else "Forbid"
+        menu.addAction(f"{verb}\t{shown_key('hide_point')}", lambda: self.editing.forbid(node))
         menu.addSeparator()
         menu.addAction("Put all motions back in order", self.places.tidy)
         return menu

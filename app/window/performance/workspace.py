@@ -14,6 +14,7 @@ from app.window.controls import Panel
 from app.window.frames import FrameLoader
 from app.window.performance.carried import Carried
 from app.window.performance.composed_panel import ComposedPanel
+from app.window.performance.crossing import Crossing
 from app.window.performance.database_panel import DatabasePanel
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.graph_panel import HINT, GraphPanel
@@ -59,6 +60,7 @@ class PerformanceWorkspace(Workspace):
         self.side = PreviewSide(self.preview, self.matrix, self.strip)
         self.library.facts.azimuth = self.preview.azimuth
         self.carried = Carried(self)
+        self.crossing = Crossing(self, self.state, self.thumbnails)
         self._low = False
         self.errors = self.graph.errors
         self._cards = QTimer(self)
@@ -91,6 +93,8 @@ class PerformanceWorkspace(Workspace):
         self.graph.wanted.connect(self.wanted)
         self.graph.carried.connect(self._carry)
         self.graph.dropped.connect(self._drop)
+        self.graph.canvas.crossing.connect(self.crossing.show_edge)
+        self.composed.crossing.connect(self.crossing.show_cut)
         self.composed.wanted.connect(self.wanted)
         self.composed.source_wanted.connect(lambda _: self._show_parts())
         self.state.hint.connect(self.hint)
@@ -134,6 +138,7 @@ class PerformanceWorkspace(Workspace):
         self.thumbnails.forget()
         self.graph.stop()
         self.composed.stop()
+        self.crossing.stop()
         self._cards.stop()
         self.project = None
 
@@ -148,6 +153,7 @@ class PerformanceWorkspace(Workspace):
         """Nothing plays unseen."""
         self.state.playback.stop()
         self.graph.stop()
+        self.crossing.stop()
 
     def is_empty(self, document: Document) -> bool:
         """It says itself what to do first."""
