@@ -40,6 +40,32 @@ def take_background(shell: Shell, camera: Camera) -> None:
     video.masks_button.setChecked(True)
 
 
+def take_contact(shell: Shell, camera: Camera) -> None:
+    """An anchor on its way over the measured surface."""
+    project, video = shell.project, shell.video
+    assert project is not None
+    track = next(each for each in project.document.tracks if each.contacts)
+    kept, frame = project.frame, track.contacts[0].span.first + 3
+    project.show_frame(frame)
+    camera.live(5, lambda: video.frame == frame)
+    if project.result(project.session.stages.contacts(track.id)) is None:
+        project.start("Placing contacts", project.session.stages.contacts(track.id))
+        camera.live(30, lambda: not project.progress)
+    project.select_track(track.id)
+    shell.do("tool_contact")
+    x, y = next(place for mark in video._marks if mark.name == track.id and (place := mark.at(frame)) is not None)
+    video.snapping.dragged = (track.id, (x + 16, y + 10))
+    video.refresh()
+    camera.live(20, lambda: video.background.surface(frame) is not None)
+    video.refresh()
+    camera.take("video-contact")
+    video.snapping.dragged = None
+    shell.do("tool_select")
+    project.select_track("")
+    project.show_frame(kept)
+    camera.live(5, lambda: video.frame == kept)
+
+
 def take_render(shell: Shell, camera: Camera) -> None:
     """The dialog of a film with a frame of it."""
     from tools.screenshots import TARGET

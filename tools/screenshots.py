@@ -26,7 +26,7 @@ from app.model.edits import scene  # noqa: E402
 from app.window.application import make_application  # noqa: E402
 from app.window.shell import Shell  # noqa: E402
 from app.window.video.scene_picking import seen_points  # noqa: E402
-from tools.background_pictures import take_background, take_render  # noqa: E402
+from tools.background_pictures import take_background, take_contact, take_render  # noqa: E402
 from tools.performance_pictures import take_performance  # noqa: E402
 
 TARGET = ROOT / "docs" / "screenshots"
@@ -88,6 +88,7 @@ def main() -> None:
         camera.live(20, lambda: not shell.video.canvas.picture.isNull())
         _video(shell, camera)
         take_background(shell, camera)
+        take_contact(shell, camera)
         take_render(shell, camera)
         _character(shell, camera)
         if shell.project is not None:
