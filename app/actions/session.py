@@ -25,10 +25,11 @@ from app.stages.media import Media
 from app.stages.project import Stages
 from app.stages.runner import Runner
 from app.stages.stage import Stage
-from app.storage.folder import SUFFIX, ProjectFolder
+from app.storage.folder import SUFFIX, ProjectFolder, copy_files
 from app.storage.lock import FolderLock
 from app.storage.results import ResultStore
 from imitation.errors import InputError
+from imitation.progress import Progress
 
 Changed = Callable[[Document, Document], None]
 
@@ -174,7 +175,7 @@ class Session:
                 if with_media:
                     document = with_media_at(document, copied_media(document, self.folder, target))
                 if self.folder.media.is_dir():
-                    shutil.copytree(self.folder.media, target.media, dirs_exist_ok=True)
+                    shutil.copytree(self.folder.media, target.media, dirs_exist_ok=True, copy_function=_unless_there)
             target.save(document)
         except BaseException:
             _take_back(target, media=not held)
@@ -190,6 +191,23 @@ class Session:
         if document is not self.document:
             self.history.apply(document, "Copy media into the project")
         self.history.mark_saved()
+
+    def send_media(self, path: Path, progress: Progress) -> None:
+        """Copy the project's own media to a place where ``save_as`` will find them; safe in any thread.
+
+        Cancelled or failed, the place is free as it was.
+        """
+        target = ProjectFolder.free(path)
+        held, there = target.media.is_dir(), target.path.is_dir()
+        try:
+            with explained(target.path):
+                copy_files(self.folder.media, target.media, progress)
+        except BaseException:
+            if not held:
+                shutil.rmtree(target.media, ignore_errors=True)
+            if not there:
+                shutil.rmtree(target.path, ignore_errors=True)
+            raise
 
     def autosave(self) -> bool:
         """Write unsaved work beside the saved project; False when there is none, and none is left to recover then.
@@ -250,6 +268,18 @@ class Session:
 
 def _new_folder(path: Path) -> ProjectFolder:
     return ProjectFolder.create(path, Document())
+
+
+def _unless_there(source: str, target: str) -> None:
+    """Copy a file that was not sent ahead."""
+    old, new = Path(source), Path(target)
+    if not new.is_file() or _stamp(old) != _stamp(new):
+        shutil.copy2(old, new)
+
+
+def _stamp(file: Path) -> tuple[int, int]:
+    status = file.stat()
+    return status.st_size, int(status.st_mtime)
 
 
 def _take_back(folder: ProjectFolder, *, media: bool) -> None:

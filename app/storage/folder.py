@@ -47,11 +47,17 @@ class ProjectFolder:
         return self.path / "results"
 
     @classmethod
-    def create(cls, path: Path, document: Document) -> ProjectFolder:
-        """Make a new project folder; one that exists with a project inside is refused."""
+    def free(cls, path: Path) -> ProjectFolder:
+        """Give the place of a new project, with the suffix; one that exists with a project inside is refused."""
         folder = cls(path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX))
         if folder.file.exists():
             raise InputError(f"{folder.path} is a project already: open it, or choose another name.")
+        return folder
+
+    @classmethod
+    def create(cls, path: Path, document: Document) -> ProjectFolder:
+        """Make a new project folder; one that exists with a project inside is refused."""
+        folder = cls.free(path)
         with explained(folder.path):
             folder.path.mkdir(parents=True, exist_ok=True)
         folder.save(document)
@@ -112,7 +118,7 @@ class ProjectFolder:
             try:
                 with explained(target):
                     self.media.mkdir(exist_ok=True)
-                    _copy(source, beside, progress or silent)
+                    copy_files(source, beside, progress or silent)
                     beside.rename(target)
             finally:
                 if beside.is_dir():
@@ -156,7 +162,8 @@ def size_of(path: Path) -> int:
     return path.stat().st_size if path.exists() else 0
 
 
-def _copy(source: Path, target: Path, progress: Progress) -> None:
+def copy_files(source: Path, target: Path, progress: Progress) -> None:
+    """Copy a file, or the files of a folder, piece by piece; what was copied before a cancellation stays."""
     files = [file for file in source.rglob("*") if file.is_file()] if source.is_dir() else [source]
     total, done = max(size_of(source), 1), 0
     for file in sorted(files):
@@ -167,6 +174,7 @@ def _copy(source: Path, target: Path, progress: Progress) -> None:
                 writing.write(part)
                 done += len(part)
                 progress(min(done / total, 1.0))
+        shutil.copystat(file, place)
 
 
 def fingerprint(path: Path) -> str:

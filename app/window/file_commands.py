@@ -16,8 +16,9 @@ from app.stages.job import Job
 from app.storage.folder import SUFFIX, size_of
 from app.window import files, settings
 from app.window.project import Project
+from app.window.waiting import wait_for
 from app.window.work import details
-from imitation.errors import InputError
+from imitation.errors import Cancelled, InputError
 
 if TYPE_CHECKING:
     from app.window.shell import Shell
@@ -158,16 +159,25 @@ class FileCommands(QObject):
             return False
         if project.document.name == "Untitled":
             project.edit(scene.rename, path.name.removesuffix(SUFFIX))
-        if not self._saved(project, lambda: project.session.save_as(path)):
+        if not self._saved(project, lambda: self._save_at(project, path)):
             return False
         settings.remember_project(project.session.folder.path)
         return True
+
+    def _save_at(self, project: Project, path: Path) -> None:
+        """Save at another place; many media are copied there first, with a bar."""
+        session = project.session
+        if size_of(session.folder.media) > LARGE:
+            wait_for(self.shell, "Copying media", lambda tell: session.send_media(path, tell))
+        session.save_as(path)
 
     def _saved(self, project: Project, save: Callable[[], object]) -> bool:
         """Save, show it, and keep a small picture for the welcome; where it fails, say why and offer another place."""
         notices = self.shell.care.notices
         try:
             save()
+        except Cancelled:
+            return False
         except (InputError, OSError) as error:
             self.shell.side.log.add(str(error), details(error))
             notices.ask(

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QTimer, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QPushButton
 
 from app.actions import bringing
 from app.actions.session import Session
@@ -198,3 +199,40 @@ def test_media_are_copied_in_when_wanted(empty: Shell, tmp_path: Path, monkeypat
     empty.do("save_as_whole")
     wait_for(lambda: not empty.project.progress)
     assert (tmp_path / "other.motionwright" / "media" / "dog.mp4").is_file()
+
+
+def test_many_media_are_copied_with_a_bar(
+    empty: Shell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qapp: QApplication
+) -> None:
+    """Saving elsewhere waits behind a bar; Cancel leaves no project there and the work unsaved."""
+    write_video(tmp_path / "dog.mp4", noise(), 25)
+    fall(empty, data_of(tmp_path / "dog.mp4"))
+    empty.do("collect")
+    wait_for(lambda: not empty.project.document.clip.media.linked)
+    monkeypatch.setattr("app.window.file_commands.LARGE", 0)
+    monkeypatch.setattr("app.window.waiting.PATIENCE", 0)
+    monkeypatch.setattr("app.window.files.ask_place", lambda *_: tmp_path / "walk")
+    cancelling = QTimer()
+
+    def cancel() -> None:
+        bar = qapp.activeModalWidget()
+        if bar is not None:
+            QTest.mouseClick(bar.findChild(QPushButton), LEFT)
+
+    def endless(source: Path, target: Path, progress: Callable[[float], None]) -> None:
+        target.mkdir(parents=True)
+        while True:
+            progress(0.5)
+            time.sleep(0.01)
+
+    cancelling.timeout.connect(cancel)
+    cancelling.start(20)
+    with monkeypatch.context() as patched:
+        patched.setattr("app.actions.session.copy_files", endless)
+        assert not empty.files.save()
+    cancelling.stop()
+    assert not (tmp_path / "walk.motionwright").exists()
+    assert empty.isWindowModified()
+    assert empty.files.save()
+    assert (tmp_path / "walk.motionwright" / "media" / "dog.mp4").is_file()
+    assert not empty.isWindowModified()

@@ -121,3 +121,25 @@ def test_copying_that_is_cancelled_leaves_nothing(project: Path) -> None:
             collecting.copied_media(session.document, session.folder, session.folder, stop)
         assert not session.folder.media.exists() or not list(session.folder.media.iterdir())
         assert isinstance(session.folder, ProjectFolder)
+
+
+def test_media_are_sent_ahead_of_a_save(project: Path, tmp_path: Path) -> None:
+    """Copied with progress to where the project will be saved; saving then copies nothing anew; cancelled, no trace."""
+
+    def stop(fraction: float) -> None:
+        raise Cancelled
+
+    with closing(Session.open(project)) as session:
+        copies = collecting.copied_media(session.document, session.folder, session.folder)
+        session.apply(collecting.use_copies(session.document, copies))
+        with pytest.raises(Cancelled):
+            session.send_media(tmp_path / "other", stop)
+        assert not (tmp_path / "other.motionwright").exists()
+        told: list[float] = []
+        session.send_media(tmp_path / "other", told.append)
+        assert told[-1] == 1.0
+        sent = tmp_path / "other.motionwright" / "media" / "dog.mp4"
+        before = sent.stat().st_ino, sent.stat().st_ctime_ns
+        session.save_as(tmp_path / "other")
+        assert (sent.stat().st_ino, sent.stat().st_ctime_ns) == before
+        assert len(session.frames()) == 6
