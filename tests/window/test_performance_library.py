@@ -7,7 +7,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QMimeData, QPoint, Qt, QUrl
+from PySide6.QtGui import QDragEnterEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QComboBox
 
@@ -193,6 +194,13 @@ def test_structure_is_chosen(composed: Shell) -> None:
 
 def test_what_cannot_be_read_is_told(composed: Shell, tmp_path: Path, folder: Path) -> None:
     """A sentence, nothing is added; another sequence's files are refused where one is found again."""
+    project = composed.project.session.folder.path
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(project))])
+    enter = QDragEnterEvent(QPoint(40, 60), Qt.DropAction.CopyAction, data, LEFT, PLAIN)
+    enter.setAccepted(False)
+    library(composed).dragEnterEvent(enter)
+    assert not enter.isAccepted(), "a project is opened by the window"
     empty = tmp_path / "nothing here"
     empty.mkdir()
     drop(library(composed), empty)

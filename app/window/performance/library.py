@@ -10,6 +10,7 @@ from PySide6.QtCore import QEvent, QPoint, Qt, Signal
 from PySide6.QtGui import QDragEnterEvent, QDropEvent, QImage
 from PySide6.QtWidgets import QApplication, QFileDialog, QMenu, QVBoxLayout, QWidget
 
+from app.actions.kinds import kind_of
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence
 from app.stages.job import Job
@@ -357,8 +358,9 @@ def _is_known(path: Path) -> bool:
 
 
 def _is_path(path: Path) -> bool:
-    return path.suffix.lower() == ".json" and path.is_file()
+    return path.suffix.lower() == ".json" and path.is_file() and kind_of(path) == ""
 
 
 def _is_sequence(path: Path) -> bool:
-    return path.is_dir() or path.suffix.lower() in FILES
+    """Whether it may be one; a folder that is nothing known is taken, to say what is wrong with it."""
+    return kind_of(path) in ("sequence", "") if path.is_dir() else path.suffix.lower() in FILES
