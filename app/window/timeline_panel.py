@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QFrame, QMenu, QScrollArea
 
-from app.model.edits import contacts, masks, scene, tracks
+from app.model.edits import contacts, masks, poses, scene, tracks
 from app.window.controls import Panel
 from app.window.frames import FrameLoader
 from app.window.lanes_of import VIDEO_LEGEND, worst_near
@@ -142,11 +142,28 @@ class TimelinePanel(Panel):
             menu.addAction("Remove this click", lambda: project.edit(tracks.remove_click, track.id, found.frame))
         elif found.lane == "video" and found.kind == "diamond":
             menu.addAction("Remove this mask", lambda: project.edit(scene.remove_mask, found.frame))
+        elif found.lane == "poses":
+            self._pose_entries(menu, project, found.frame)
+        elif found.lane == "solution":
+            menu.addAction("Solve what is missing", lambda: self.transport.wanted.emit("propagate"))
         menu.addAction("Begin the range here", lambda: self._range(found.frame, None))
         menu.addAction("End the range here", lambda: self._range(None, found.frame))
         if project.document.range is not None:
             menu.addAction("Use the whole clip", lambda: project.edit(scene.set_range, None, None))
         return menu
+
+    def _pose_entries(self, menu: QMenu, project: Project, frame: int) -> None:
+        """What can be done with a pose edit: copy and paste are the workspace's, which then shows the frame."""
+
+        def ask(name: str) -> None:
+            project.show_frame(frame)
+            self.transport.wanted.emit(name)
+
+        character = next((each for each in project.document.characters if each.id == project.character_id), None)
+        if character is not None and frame in character.edits:
+            menu.addAction("Copy this pose edit", lambda: ask("copy_pose"))
+            menu.addAction("Delete this pose edit", lambda: project.edit(poses.delete_edit, character.id, frame))
+        menu.addAction("Paste a pose edit here", lambda: ask("paste_pose"))
 
     def _menu(self, found: TimelineHit, place: QPoint) -> None:
         self.menu_for(found).popup(place)

@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.window.shell import Shell
+from app.window.timeline import TimelineHit
 from tests.window.conftest import _move, at, drag, settle, wait_for
 from tests.window.test_character_workspace import (
     CONTROL,
@@ -277,6 +278,28 @@ def test_a_pose_is_copied_to_another_frame(posed: Shell) -> None:
     moved = [np.subtract(character(posed).edits[frame].moves[nose].place, before[frame]) for frame in (10, 18)]
     assert np.linalg.norm(moved[0]) == pytest.approx(np.linalg.norm(moved[1]), rel=1e-6)
     quiet(posed)
+
+
+def test_the_lane_of_pose_edits_copies_pastes_and_deletes(posed: Shell) -> None:
+    """Its menu does what the keys do, in the frame that was clicked."""
+    nose = vertex(posed, "nose")
+    drag_vertex(posed, nose, 20, -30)
+    wait_for(lambda: 10 in character(posed).edits)
+    quiet(posed)
+
+    def choose(frame: int, text: str) -> None:
+        menu = posed.timeline.menu_for(TimelineHit("diamond", "poses", "poses", frame))
+        next(action for action in menu.actions() if action.text() == text).trigger()
+        menu.deleteLater()
+
+    posed.project.show_frame(3)
+    choose(10, "Copy this pose edit")
+    assert posed.project.frame == 10
+    choose(15, "Paste a pose edit here")
+    wait_for(lambda: 15 in character(posed).edits)
+    choose(10, "Delete this pose edit")
+    assert set(character(posed).edits) == {15}
+    posed.project.cancel_work()
 
 
 def test_a_control_vertex_is_deleted_in_all_frames(posed: Shell) -> None:

@@ -71,15 +71,16 @@ def _gizmo(work: CharacterWorkspace, mode: str) -> None:
 
 
 def _copy(work: CharacterWorkspace) -> None:
-    if work.posing is not None:
-        work.say(work.posing.copy_pose(work.frame))
+    if work.posing is not None and work.project is not None:
+        work.say(work.posing.copy_pose(work.project.frame))
         work.refresh()
 
 
 def _paste(work: CharacterWorkspace) -> None:
-    sentence = work.posing.paste_pose(work.frame) if work.posing is not None else ""
-    if sentence:
-        work.say(sentence)
+    if work.posing is not None and work.project is not None:
+        sentence = work.posing.paste_pose(work.project.frame)
+        if sentence:
+            work.say(sentence)
 
 
 def _cancel(work: CharacterWorkspace) -> bool:
