@@ -393,4 +393,8 @@ class VideoWorkspace(Workspace):
             "nudge_right": lambda: nudge(project, self.reading, frame, 0.25, 0.0),
             "nudge_up": lambda: nudge(project, self.reading, frame, 0.0, -0.25),
             "nudge_down": lambda: nudge(project, self.reading, frame, 0.0, 0.25),
+            "nudge_left_far": lambda: nudge(project, self.reading, frame, -2.5, 0.0),
+            "nudge_right_far": lambda: nudge(project, self.reading, frame, 2.5, 0.0),
+            "nudge_up_far": lambda: nudge(project, self.reading, frame, 0.0, -2.5),
+            "nudge_down_far": lambda: nudge(project, self.reading, frame, 0.0, 2.5),
         }
