@@ -6,6 +6,7 @@ import math
 import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PySide6.QtCore import QMimeData, QPoint, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent
@@ -240,3 +241,22 @@ def test_the_menus_offer_what_there_is(composed: Shell) -> None:
     pick(shown.menu_for(walk.id), "Play as captured")
     assert composed.pages.in_sight.state.playback.playing
     composed.pages.in_sight.state.playback.stop()
+
+
+def test_a_characters_motion_joins(shell: Shell) -> None:
+    """What was imitated from a film is a sequence like any other: added by the menu, analysed, looked at in 3D."""
+    QTest.keyClick(shell, Qt.Key.Key_F3)
+    page = shell.pages.in_sight
+    hound = shell.project.document.characters[0]
+    pick(page.library.add_menu(), f"Motion of {hound.name}")
+    made = shell.project.document.sequences[0]
+    assert made.character == hound.id
+    assert label_of(shell) == f"Add {made.name}"
+    quiet(shell, 120)
+    assert page.library.cards.cards[0].strip
+    assert not page.library.facts.rate.isEnabled(), "the film has the rate"
+    page.state.show_source(made.id, 5)
+    wait_for(lambda: page.preview.shown == 5)
+    animated = shell.project.result(shell.project.session.stages.animation(hound.id))
+    np.testing.assert_allclose(page.preview.frame.vertices, animated.vertices[5], atol=1e-5)
+    assert "the same faces in every frame" in page.library.facts.statistics.text()
