@@ -39,10 +39,10 @@ def demo(console: Console, folder: Path, fresh: bool) -> None:
         shutil.rmtree(place, ignore_errors=True)
     with closing(_session(place)) as session:
         characters = session.document.characters
-        console.compute(session, "Solving the cameras", (session.stages.cameras,))
         standing = Standing(occlusion=True, shadow=True, plate=True, shutter=SHUTTER, grain=None)
         stages = tuple(session.stages.animation(each.id) for each in characters)
-        console.compute(session, "Animating and measuring the background", (*stages, *standing.stages(session)))
+        # All at once: points are tracked while the cameras are solved, the background is measured while it is animated.
+        console.compute(session, "Tracking, cameras, background, motion", (*stages, *standing.stages(session)))
         made, first = [str(session.folder.path)], characters[0]
         for each in characters:
             film = folder / f"{each.name}.mp4"
