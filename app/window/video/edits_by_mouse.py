@@ -11,6 +11,12 @@ from app.window.reading import Reading
 from app.window.video import mask_editing
 
 Place = tuple[float, float]
+WAYS = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}
+STROKES = {
+    **{way: (0.25 * x, 0.25 * y) for way, (x, y) in WAYS.items()},
+    **{f"{way}_far": (2.5 * x, 2.5 * y) for way, (x, y) in WAYS.items()},
+}
+"""Pixels of the film that a stroke of a key moves a point by."""
 
 
 def add_point(project: Project, frame: int, place: Place) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
@@ -377,7 +378,6 @@ class VideoWorkspace(Workspace):
         project, frame = self.project, self.frame
         if project is None:
             return {}
-        nudge = edits_by_mouse.nudge
         return {
             "fit": self.canvas.fit,
             "magnifier": self.magnifier_button.toggle,
@@ -389,12 +389,8 @@ class VideoWorkspace(Workspace):
             "snap_contact": lambda: self.say(self.snapping.put_selected(frame, self._marks)),
             "free_contact": lambda: free(project, project.track_id, frame),
             "next_track": project.select_next_track,
-            "nudge_left": lambda: nudge(project, self.reading, frame, -0.25, 0.0),
-            "nudge_right": lambda: nudge(project, self.reading, frame, 0.25, 0.0),
-            "nudge_up": lambda: nudge(project, self.reading, frame, 0.0, -0.25),
-            "nudge_down": lambda: nudge(project, self.reading, frame, 0.0, 0.25),
-            "nudge_left_far": lambda: nudge(project, self.reading, frame, -2.5, 0.0),
-            "nudge_right_far": lambda: nudge(project, self.reading, frame, 2.5, 0.0),
-            "nudge_up_far": lambda: nudge(project, self.reading, frame, 0.0, -2.5),
-            "nudge_down_far": lambda: nudge(project, self.reading, frame, 0.0, 2.5),
+            **{
+                f"nudge_{way}": partial(edits_by_mouse.nudge, project, self.reading, frame, *step)
+                for way, step in edits_by_mouse.STROKES.items()
+            },
         }
