@@ -82,3 +82,14 @@ def test_half_way_is_the_pose_half_way(spread: Registration) -> None:
     pose = 0.5 * (motion_pose("wave both", 0.6) + motion_pose("jumping jack", 0.5))
     fine, _, _ = body_mesh(body_capsules(body_joints(pose)), cell=0.011)
     assert cKDTree(fine).query(spread.between(0.5))[0].mean() < 0.006
+
+
+def test_a_limb_far_on_its_way_is_caught_and_a_wrong_one_refused() -> None:
+    """An arm raised by a quarter period is found by looking further; legs of another stride stay refused."""
+    arm = tvmedit.register(body("side bend", 0.05, 1), body("side bend", 0.25, 2), height=1.75, edge=0.024)
+    assert not arm.reason
+    assert arm.residual < 0.03
+    legs = tvmedit.register(body("walk", 0.18, 3), body("walk", 0.99, 4), height=1.75, edge=0.024)
+    crossed = tvmedit.register(body("march", 0.34, 5), body("kick", 0.3, 6), height=1.75, edge=0.024)
+    assert legs.reason
+    assert crossed.reason

@@ -22,6 +22,13 @@ SAMPLES = 1000
 POINT_SHARE = 0.25
 FACING = 0.3
 """Cosine of the angle between the normals of two partners: about 72 degrees."""
+TIGHT, WIDE = (0.4, 0.05), (0.3, 0.15)
+"""Distance gates on a person, first and last, metres; the wide one where the tight one loses a limb."""
+SURE_EDGES = 1.25
+"""A registration by the tight gate is sure if 99 % of the target lies no further from it than so many edge lengths."""
+ASTRAY_EDGES = 5.0
+"""One that is not sure is refused if the way back leads 1 % of the body further astray than so many edge lengths."""
+FEWEST_BACK = 14
 REFUSED_EDGES = 2.0
 """A registration is refused if 1 % of the target lies further from it than so many mean edge lengths."""
 VOLUMES = (0.93, 1.05)
@@ -125,14 +132,48 @@ def register(
     Registration
         With its verdict; never raises for a bad fit.
     """
+    metre = body_scale(*source, height)
+    found = _judged(_fitted(source, target, metre, iterations, start, TIGHT), target, edge)
+    if not found.reason and found.residual <= SURE_EDGES * edge:
+        return found
+    # Limbs far on their way: a wider gate catches them, but now and then the wrong one. Then the way back differs.
+    wide = found
+    if found.reason:
+        wide = _judged(_fitted(source, target, metre, iterations, start, WIDE), target, edge)
+        if wide.reason:
+            return found
+    back = _judged(_fitted(target, source, metre, max(iterations, FEWEST_BACK), None, WIDE), source, edge)
+    if back.reason or _astray(wide, back) > ASTRAY_EDGES * edge:
+        reason = "part of the body has another counterpart there than back"
+        return found if found.reason else attrs.evolve(found, reason=reason)
+    return wide
+
+
+def _fitted(
+    source: tuple[Array, Faces],
+    target: tuple[Array, Faces],
+    metre: float,
+    iterations: int,
+    start: Registration | None,
+    gates: tuple[float, float],
+) -> Registration:
     vertices, faces = source
-    metre = body_scale(vertices, faces, height)
     graph = spread_nodes(vertices, faces, SPACING * metre)
     rotations, moves = _first_guess(graph, start)
     fit = _Fit(vertices, vertex_normals(vertices, faces), target[0], vertex_normals(*target), graph, metre)
-    for stiffness, gate in _schedule(iterations, warm=start is not None):
+    for stiffness, gate in _schedule(iterations, gates, warm=start is not None):
         rotations, moves = fit.step(rotations, moves, stiffness, gate * metre)
-    return _judged(Registration(vertices, faces, graph, rotations, moves), target, edge)
+    return Registration(vertices, faces, graph, rotations, moves)
+
+
+def _astray(there: Registration, back: Registration) -> float:
+    """How far 1 % of a mesh's vertices end from where they began, there and back by the nearest vertices."""
+    from scipy.spatial import cKDTree
+
+    reached = there.between(1.0)
+    partner = cKDTree(back.vertices).query(reached)[1]
+    apart = np.linalg.norm(back.between(1.0)[partner] - there.vertices, axis=1)
+    return float(np.quantile(apart, 0.99))
 
 
 def body_scale(vertices: Array, faces: Faces, height: float) -> float:
@@ -142,14 +183,11 @@ def body_scale(vertices: Array, faces: Faces, height: float) -> float:
     return max(height / PERSON, float(np.sqrt(area / SKIN)))
 
 
-def _schedule(iterations: int, *, warm: bool) -> list[tuple[float, float]]:
-    """Stiffness 3 to 0.2 and distance gate 40 to 5 cm, geometrically; a warm start begins half of the way.
-
-    A wider gate in the end catches limbs that are far on their way, and now and then the wrong one, unnoticed.
-    """
+def _schedule(iterations: int, gates: tuple[float, float], *, warm: bool) -> list[tuple[float, float]]:
+    """Stiffness 3 to 0.2 and distance gate from first to last, geometrically; a warm start begins half of the way."""
     first = 0.5 if warm else 0.0
     shares = np.linspace(first, 1.0, iterations)
-    return [(3.0 * (0.2 / 3.0) ** s, 0.4 * (0.05 / 0.4) ** s) for s in shares.tolist()]
+    return [(3.0 * (0.2 / 3.0) ** s, gates[0] * (gates[1] / gates[0]) ** s) for s in shares.tolist()]
 
 
 def _first_guess(graph: DeformationGraph, start: Registration | None) -> tuple[Array, Array]:
