@@ -166,6 +166,11 @@ def drag(
         QTest.mouseRelease(widget, button, keys, at(*end))
 
 
+def hover(widget: QWidget, place: QPoint) -> None:
+    """Move the mouse over a widget with nothing pressed; on a real screen moving the pointer takes its time."""
+    _move(widget, place, Qt.MouseButton.NoButton, Qt.KeyboardModifier.NoModifier)
+
+
 def _move(widget: QWidget, place: QPoint, button: Qt.MouseButton, keys: Qt.KeyboardModifier) -> None:
     from PySide6.QtCore import QEvent
     from PySide6.QtGui import QMouseEvent

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QApplication, QComboBox, QDialog, QFileDialog, QLi
 from app.formats import open_video, write_video
 from app.window.canvas.hits import GRAB
 from app.window.shell import Shell
-from tests.window.conftest import _move, at, drag, settle, wait_for
+from tests.window.conftest import _move, at, drag, hover, settle, wait_for
 
 LEFT = Qt.MouseButton.LeftButton
 PLAIN = Qt.KeyboardModifier.NoModifier
@@ -243,7 +243,7 @@ class Hands:
         lines = box.view()
         wait_for(lines.isVisible)
         place = lines.visualRect(box.model().index(box.findText(text), 0)).center()
-        QTest.mouseMove(lines.viewport(), place)
+        hover(lines.viewport(), place)
         settle(200)
         QTest.mouseClick(lines.viewport(), LEFT, PLAIN, place)
         settle()

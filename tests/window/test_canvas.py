@@ -27,7 +27,7 @@ from app.window.canvas.gestures import (
     PlaceGesture,
 )
 from app.window.canvas.hits import inside, nearest_edge, nearest_point
-from tests.window.conftest import at, drag
+from tests.window.conftest import at, drag, hover
 
 places = st.floats(-2000, 2000)
 views = st.builds(View, st.floats(0.06, 60), places, places)
@@ -196,7 +196,7 @@ def test_middle_button_pans(canvas: Canvas) -> None:
     """The picture follows the mouse by as much as it moves."""
     before = canvas.view
     QTest.mousePress(canvas, Qt.MouseButton.MiddleButton, pos=at(100, 100))
-    QTest.mouseMove(canvas, at(140, 130))
+    hover(canvas, at(140, 130))
     QTest.mouseRelease(canvas, Qt.MouseButton.MiddleButton, pos=at(140, 130))
     assert (canvas.view.x - before.x, canvas.view.y - before.y) == (40, 30)
 
@@ -244,7 +244,7 @@ def test_magnifier_shows_the_place_under_the_mouse(canvas: Canvas) -> None:
     x, y = canvas.view.point(20, 10)
     plain = canvas.grab().toImage()
     canvas.magnify = True
-    QTest.mouseMove(canvas, at(x, y))
+    hover(canvas, at(x, y))
     loupe = canvas.grab().toImage()
     assert loupe != plain
     canvas.magnify = False

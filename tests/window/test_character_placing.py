@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from app.model.edits import characters
 from app.window.shell import Shell
 from app.window.viewport import Gizmo
-from tests.window.conftest import at, drag, settle, wait_for
+from tests.window.conftest import at, drag, hover, settle, wait_for
 from tests.window.test_character_editing import stroke
 from tests.window.test_character_workspace import CONTROL, LEFT, character, done, place, pose, posed, vertex, view
 
@@ -227,16 +227,16 @@ def test_what_is_pointed_at_is_lit_on_both_sides(posed: Shell) -> None:
     nose = next(track for track in posed.project.document.tracks if track.name == "nose")
     number = character(posed).pairs[nose.id]
     x, y = place(posed, number)
-    QTest.mouseMove(view(posed), at(x, y))
+    hover(view(posed), at(x, y))
     assert posed.character.tracks.shown.hovered == nose.id
-    QTest.mouseMove(view(posed), at(4, 4))
+    hover(view(posed), at(4, 4))
     assert posed.character.tracks.shown.hovered == ""
-    QTest.mouseMove(posed.character.tracks.canvas, mark_of(posed, "nose"))
+    hover(posed.character.tracks.canvas, mark_of(posed, "nose"))
     assert view(posed).highlighted == number
     rows, inspector = posed.character.inspector.pairs.list, posed.character.inspector
     spot_ = rows.mapTo(inspector.widget(), rows.place_of(nose.id).toPoint())
     inspector.ensureVisible(spot_.x(), spot_.y())
     settle()
-    QTest.mouseMove(rows, rows.place_of(nose.id).toPoint())
+    hover(rows, rows.place_of(nose.id).toPoint())
     assert view(posed).highlighted == number
     assert posed.character.tracks.shown.hovered == nose.id

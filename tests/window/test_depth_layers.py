@@ -18,7 +18,7 @@ from app.window import settings
 from app.window.shell import Shell
 from imitation.errors import NoSolution
 from tests.window.clipping import assert_nothing_clipped
-from tests.window.conftest import at, drag, settle, wait_for
+from tests.window.conftest import at, drag, hover, settle, wait_for
 from tests.window.measured import measure
 from tests.window.small_project import SIZE, small_clip
 
@@ -111,7 +111,7 @@ def test_the_wipe_is_dragged_over_the_frame(measured: Shell) -> None:
     canvas, versions = measured.video.canvas, len(measured.project.session.history.versions)
     line = measured.video.shown.backdrop.wipe
     start = canvas.view.point(line, 90)
-    QTest.mouseMove(canvas, at(*start))
+    hover(canvas, at(*start))
     settle()
     assert canvas.cursor().shape() == Qt.CursorShape.SplitHCursor
     end = canvas.view.point(240, 60)
@@ -222,7 +222,7 @@ def test_an_anchor_is_dragged_over_the_surface(measured: Shell) -> None:
     before = next(each for each in track.contacts if frame in each.span).place
     QTest.keyClick(measured, Qt.Key.Key_C)
     start = canvas.view.point(*place)
-    QTest.mouseMove(canvas, at(*start))
+    hover(canvas, at(*start))
     wait_for(lambda: measured.video.shown.snap is not None and measured.video.shown.snap.disc is not None)
     assert "away" in measured.video.shown.snap.text, "hovering says where it would lie"
     versions = len(project.session.history.versions)
@@ -287,7 +287,7 @@ def test_a_new_contact_is_marked_by_dragging_it_onto_the_surface(measured: Shell
     mark = max(marks, key=lambda each: each.at(4)[1])
     start = canvas.view.point(*mark.at(4))
     measured.do("tool_contact")
-    QTest.mouseMove(canvas, at(*start))
+    hover(canvas, at(*start))
     wait_for(lambda: measured.video.background.surface(4) is not None)
     sky = canvas.view.point(mark.at(4)[0], 2)
     known = np.isfinite(small_clip().depth(4)[0, round(mark.at(4)[0])])

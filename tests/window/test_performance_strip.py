@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from app.window import theme
 from app.window.performance.strip import BOX, RULER, drag_of
 from app.window.shell import Shell
-from tests.window.conftest import at, drag, settle, wait_for
+from tests.window.conftest import at, drag, hover, settle, wait_for
 from tests.window.performance_parts import CONTROL, LEFT, PLAIN, label_of, pick, quiet
 from tests.window.performance_parts import composed as composed
 from tests.window.performance_parts import composed_project as composed_project
@@ -164,7 +164,7 @@ def test_the_matrix_shows_and_moves_boundaries(composed: Shell, strip: object) -
     settle(50)
     seen = view.window_
     where = at(seen.place(3.5, 0), seen.place(9.5, 1))
-    QTest.mouseMove(view, where)
+    hover(view, where)
     words = view.words_at(where)
     assert words.startswith(f"Frames 3 and 9: {view.distance(3, 9):.3f}")
     assert strip.view.strip.motions[0].reason in words

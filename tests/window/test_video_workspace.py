@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
 from app.window.shell import Shell
-from tests.window.conftest import at, drag, settle, wait_for
+from tests.window.conftest import at, drag, hover, settle, wait_for
 
 pytestmark = [pytest.mark.window, pytest.mark.slow, pytest.mark.xdist_group("window")]
 LEFT = Qt.MouseButton.LeftButton
@@ -54,7 +54,7 @@ def test_scrubbing_never_shows_a_frame_with_the_marks_of_another(shell: Shell) -
     y = 10
     QTest.mousePress(lanes, LEFT, pos=at(lanes.axis.x(0), y))
     for frame in (3, 9, 15, 22, 12):
-        QTest.mouseMove(lanes, at(lanes.axis.x(frame), y))
+        hover(lanes, at(lanes.axis.x(frame), y))
         settle(10)
         assert shell.video.notes.text.startswith(f"Frame {shell.video.frame} of")
     QTest.mouseRelease(lanes, LEFT, pos=at(lanes.axis.x(12), y))
