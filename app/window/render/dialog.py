@@ -27,7 +27,8 @@ PAGES = (
     ("motion", "Motion", "export"),
     ("background", "Background", "background"),
 )
-SOON = 40
+SOON = 80
+"""Milliseconds that a frame rests before it is made: while the clip plays, nothing is."""
 
 
 class RenderDialog(QDialog):

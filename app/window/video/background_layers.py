@@ -6,7 +6,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.actions.background_views import Kind
 from app.actions.session import Session
@@ -27,6 +27,8 @@ WIPE = "wipe"
 GRAB = 9.0
 """Pixels round the line of the wipe within which a press takes hold of it."""
 KEPT = 24
+REST = 70
+"""Milliseconds that a frame rests before its layer is made: while the clip plays, none is."""
 Key = tuple[str, str, str]
 
 
@@ -50,6 +52,11 @@ class BackgroundLayers(QObject):
         self._refused: tuple[Key, str] | None = None
         self._then: tuple[int, Callable[[], object]] | None = None
         self._told = -1
+        self._waiting: tuple[int, list[Kind | str]] = (0, [])
+        self._rest = QTimer(self)
+        self._rest.setSingleShot(True)
+        self._rest.setInterval(REST)
+        self._rest.timeout.connect(lambda: self._want(*self._waiting))
 
     def attach(self, project: Project) -> None:
         """Show the background of another project."""
@@ -62,6 +69,7 @@ class BackgroundLayers(QObject):
 
     def detach(self) -> None:
         """Forget the project and end the thread."""
+        self._rest.stop()
         if self._calls is not None:
             self._calls.close()
             self._calls.deleteLater()
@@ -84,7 +92,7 @@ class BackgroundLayers(QObject):
             wanted: list[Kind | str] = [kind] if shown else []
             if surface:
                 wanted.append("surface")
-            self._want(frame, wanted)
+            self._want_soon(frame, wanted)
             found = self._made.get((self._key(), frame, kind)) if shown else None
             note = found[1] if found is not None else self._reason() or f"{KINDS[kind][0]} of frame {frame} is made …"
             if found is not None:
@@ -119,9 +127,18 @@ class BackgroundLayers(QObject):
 
     # making ------------------------------------------------------------------------------------------------------
 
+    def _want_soon(self, frame: int, kinds: list[Kind | str]) -> None:
+        """Ask for what is missing of a frame once it has been in sight for a moment."""
+        key = self._key()
+        if all((key, frame, kind) in self._made for kind in kinds):
+            self._rest.stop()
+        elif not self._rest.isActive() or self._waiting != (frame, kinds):
+            self._waiting = (frame, kinds)
+            self._rest.start()
+
     def _want(self, frame: int, kinds: list[Kind | str]) -> None:
-        assert self.project is not None
-        assert self._calls is not None
+        if self.project is None or self._calls is None:
+            return
         key = self._key()
         missing = tuple(kind for kind in kinds if (key, frame, kind) not in self._made)
         if not missing or self._reason():
