@@ -176,7 +176,10 @@ class Composition:
             shadow = None
             if ground is not None:
                 shadow = ground_shadow(pose, lights, camera, size, ground, renderer.look, renderer.up)
-            drawn = blurred(renderer, moving.vertices, frame, camera, lights, shutter=self.standing.shutter)
+            drawn = blurred(
+                renderer, moving.vertices, frame, camera, lights, shutter=self.standing.shutter,
+                cameras=self.world.cameras,
+            )  # fmt: skip
             layers.append(Layer(drawn, shadow))
             reach = max(reach, SINK * lights[0].radius)
         return flattened(layers, size[::-1], background=back.hides, tolerance=reach, soft=True)

@@ -77,7 +77,7 @@ def render_sequence(
     background : n depth maps (h, w) that hide what is behind them.
     tracks : name to (n, 2) tracked points to draw, pixels.
     dim : how far the background fades towards grey, 0 to 1.
-    shutter : share of the frame time that the shutter is open: blurs what the character itself does.
+    shutter : share of the frame time that the shutter is open: blurs what moves in the picture.
     grain : noise over the character, grey levels; see ``grain_of``.
     """
     report = progress or silent
@@ -101,7 +101,7 @@ def render_sequence(
                 renderer, pose, camera, back, floor, None if background is None else background[t],
                 None if tracks is None else [track[t] for track in tracks.values()],
                 drawn=lambda lights, t=t, camera=camera: blurred(  # type: ignore[misc]
-                    renderer, vertices, t, camera, lights, shutter=shutter  # type: ignore[arg-type]
+                    renderer, vertices, t, camera, lights, shutter=shutter, cameras=cameras  # type: ignore[arg-type]
                 ),
                 grain=grain, seed=t,
             )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,9 @@ from imitation.errors import InputError
 from imitation.geometry.projection import Camera
 from imitation.rendering.light import LightMap
 from imitation.rendering.mesh import Renderer, Rendering
+
+if TYPE_CHECKING:
+    from imitation.cameras.path import CameraPath
 
 APART = 1.5  # pixels that a point may move from one drawn moment to the next
 MOST = 9  # moments
@@ -33,9 +37,25 @@ def pose_at(vertices: Sequence[NDArray[np.float64]] | NDArray[np.float64], time:
     return curved
 
 
-def moments(before: NDArray[np.float64], after: NDArray[np.float64], camera: Camera) -> int:
+def camera_at(cameras: Sequence[Camera] | CameraPath, time: float) -> Camera:
+    """The camera at a time in frames, turned and moved evenly from the frame before to the one after."""
+    last = len(cameras) - 1
+    time = float(np.clip(time, 0, last))
+    k = min(int(time), max(last - 1, 0))
+    s = time - k
+    if s == 0 or last == 0:
+        return cameras[k]
+    from scipy.spatial.transform import Rotation
+
+    one, two = cameras[k], cameras[k + 1]
+    R = Rotation.from_rotvec(s * Rotation.from_matrix(two.R @ one.R.T).as_rotvec()).as_matrix() @ one.R
+    centre = (1 - s) * one.centre + s * two.centre
+    return Camera((1 - s) * one.K + s * two.K, R, -R @ centre)
+
+
+def moments(before: NDArray[np.float64], after: NDArray[np.float64], opening: Camera, closing: Camera) -> int:
     """How many moments are to be drawn between two poses (v, 3), the ends of the shutter: odd, 1 for no motion."""
-    first, second = camera.project(before), camera.project(after)
+    first, second = opening.project(before), closing.project(after)
     moved = np.linalg.norm(second - first, axis=1)
     moved = moved[np.isfinite(moved)]
     if not len(moved):
@@ -52,14 +72,15 @@ def blurred(
     lights: tuple[LightMap, LightMap] | None = None,
     *,
     shutter: float = 0.5,
+    cameras: Sequence[Camera] | CameraPath | None = None,
 ) -> Rendering:
     """Draw a character as a shutter sees it that is open for a share of the frame time.
-
-    Only the character's own motion blurs, as seen from the frame's camera; the film holds the camera's blur already.
 
     Parameters
     ----------
     vertices : (n, v, 3) world, all frames. shutter : 0 (sharp) to 1 (open all the time).
+    cameras : of all frames: what the camera follows stays sharp, and what it passes is blurred as the film's background
+        is. None: the camera stands still while the shutter is open, so that only the character's own motion blurs.
 
     Returns
     -------
@@ -70,17 +91,19 @@ def blurred(
         raise InputError(f"The shutter is open for 0 to 1 of the frame time, but {shutter} was asked.")
     now = np.asarray(vertices[frame], np.float64)
     ends = [pose_at(vertices, frame + side * shutter / 2) for side in (-1, 1)]
-    count = moments(ends[0], ends[1], camera) if shutter > 0 else 1
+    views = [camera if cameras is None else camera_at(cameras, frame + side * shutter / 2) for side in (-1, 1)]
+    count = moments(ends[0], ends[1], views[0], views[1]) if shutter > 0 else 1
     middle = renderer.draw(now, camera, lights)
     if count == 1:
         return middle
     light, cover = np.zeros((*middle.depth.shape, 3), np.float32), np.zeros(middle.depth.shape, np.float32)
     depth = np.full_like(middle.depth, np.inf)
     for k in range(count):
-        part = (k + 0.5) / count - 0.5
-        drawn = (
-            middle if 2 * k + 1 == count else renderer.draw(pose_at(vertices, frame + shutter * part), camera, lights)
-        )
+        time = frame + shutter * ((k + 0.5) / count - 0.5)
+        drawn = middle
+        if 2 * k + 1 != count:
+            view = camera if cameras is None else camera_at(cameras, time)
+            drawn = renderer.draw(pose_at(vertices, time), view, lights)
         alpha = drawn.rgba[..., 3].astype(np.float32) / 255
         light += alpha[..., None] * drawn.rgba[..., :3]
         cover += alpha

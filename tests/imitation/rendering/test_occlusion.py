@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from imitation import InputError
+from imitation import Camera, InputError
+from imitation.geometry.rotations import rotation_of
 from imitation.rendering import (
     Look,
     Renderer,
@@ -19,6 +20,7 @@ from imitation.rendering import (
     render_sequence,
     visibility,
 )
+from imitation.rendering.motion_blur import camera_at
 from tests.imitation.rendering.worlds import SIZE, ball, off_centre_camera
 
 
@@ -93,6 +95,30 @@ def test_a_moving_ball_is_smeared_along_its_way_and_a_still_one_is_not() -> None
     assert spread(many, 0) > 1.15 * spread(one, 0)
     assert spread(many, 1) == pytest.approx(spread(one, 1), rel=0.05)
     assert many.sum() == pytest.approx(one.sum(), rel=0.03)
+
+
+def test_what_the_camera_follows_stays_sharp_and_what_it_passes_is_smeared() -> None:
+    """The shutter of a moving camera: its way counts as the character's does, and both may cancel."""
+    camera = off_centre_camera(0)
+    vertices, faces = ball(np.zeros(3), 0.35)
+    step = 0.5 * camera.R[0]
+    moving = np.stack([vertices + k * step for k in range(-2, 3)])
+    still = np.stack([vertices] * 5)
+    following = [Camera(camera.K, camera.R, camera.T - camera.R @ (k * step)) for k in range(-2, 3)]
+    with Renderer(faces, SIZE) as renderer:
+        sharp = renderer.draw(vertices, camera)
+        followed = blurred(renderer, moving, 2, camera, shutter=1.0, cameras=following)
+        passed = blurred(renderer, still, 2, camera, shutter=1.0, cameras=following)
+        smeared = blurred(renderer, moving, 2, camera, shutter=1.0)
+    np.testing.assert_array_equal(followed.rgba, sharp.rgba)
+    assert (passed.rgba[..., 3] > 0).sum() > 1.1 * (sharp.rgba[..., 3] > 0).sum()
+    assert np.abs(passed.rgba[..., 3].astype(float) - smeared.rgba[..., 3]).mean() < 1.5
+    between = camera_at(following, 1.5)
+    np.testing.assert_allclose(between.centre, camera.centre - 0.5 * step, atol=1e-9)
+    np.testing.assert_array_equal(camera_at(following, 2).T, camera.T)
+    turned = [camera, Camera(camera.K, rotation_of([0, 0.2, 0]) @ camera.R, camera.T)]
+    half = camera_at(turned, 0.5)
+    np.testing.assert_allclose(half.R, rotation_of([0, 0.1, 0]) @ camera.R, atol=1e-9)
 
 
 def lit_corner(sun: np.ndarray, shade: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
