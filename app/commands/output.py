@@ -34,7 +34,7 @@ CHARACTER = click.option("--character", "name", help="Which character, where the
 @click.option("--match-light", is_flag=True, help="Light them as the background is lit.")
 @click.option(
     "--motion-blur", "shutter", type=click.FloatRange(0, 1), is_flag=False, flag_value=SHUTTER, default=0.0,
-    help="Blur their motion as the camera sees it: the share of the frame time that the shutter is open, 0.5 where none is given.",
+    help="Blur their motion as the camera sees it: share of the frame time that the shutter is open, 0.5 if not given.",
 )  # fmt: skip
 @click.option("--grain", is_flag=True, help="Put the film's grain over them.")
 @click.option("--format", "form", type=click.Choice(["png", "exr"]), help="Of a folder's pictures: png, or exr.")
