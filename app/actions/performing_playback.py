@@ -28,6 +28,7 @@ class ShownFrame:
     ----------
     vertices, normals : (v, 3) float32. faces : (m, 3) int32. colours : (v, 3) uint8, None where it has none.
     low, high : corners (3,) of the box around it.
+    closed : whether its inside is never seen.
     sequence : number of the sequence it comes from. source : its frame there. blended : whether it is an in-between.
     coordinates : (v, 2) float32 places in ``picture`` (h, w, 3) uint8, (0, 0) its lower left corner, rows from the top;
         None where it wears no picture. Vertices are doubled where the picture has a seam.
@@ -42,6 +43,7 @@ class ShownFrame:
     sequence: int
     source: int
     blended: bool = False
+    closed: bool = False
     coordinates: NDArray[np.float32] | None = None
     picture: NDArray[np.uint8] | None = None
 
@@ -79,22 +81,33 @@ class ShownFrames(Sequence[ShownFrame]):
 
 def ready(mesh: FrameMesh, sequence: int, source: int, blended: bool = False) -> ShownFrame:
     """Prepare one mesh: single precision, normals, the box around it, its picture where it wears one."""
-    from imitation.geometry.drawing import drawn_normals
+    from imitation.geometry.drawing import drawn_normals, hides_its_inside
 
     vertices = np.ascontiguousarray(mesh.vertices, np.float32)
     faces = np.ascontiguousarray(mesh.faces, np.int32).reshape(-1, 3)
     columns = vertices.T
     low, high = (np.array([end(column) for column in columns], np.float64) for end in (np.min, np.max))
-    normals = drawn_normals(vertices, faces)
+    normals, closed = drawn_normals(vertices, faces), bool(hides_its_inside(vertices, faces))
     worn = _worn(mesh) if mesh.colours is None else None
     if worn is not None:
         index, split, coordinates, picture = worn
         return ShownFrame(
-            vertices[index], normals[index], split, None, low, high, sequence, source, blended, coordinates, picture
+            vertices[index],
+            normals[index],
+            split,
+            None,
+            low,
+            high,
+            sequence,
+            source,
+            blended,
+            closed,
+            coordinates,
+            picture,
         )
     colours = painted(mesh).colours
     paint = None if colours is None else np.ascontiguousarray(colours[:, :3], np.uint8)
-    return ShownFrame(vertices, normals, faces, paint, low, high, sequence, source, blended)
+    return ShownFrame(vertices, normals, faces, paint, low, high, sequence, source, blended, closed)
 
 
 Worn = tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float32], NDArray[np.uint8]]

@@ -128,3 +128,33 @@ def test_ghosts_are_seen_through(view: Viewport) -> None:
     assert strongest(both) == 0
     ghost.hide()
     assert seen(view, 0.2, 0.2) != both
+
+
+def test_a_quick_picture_is_the_same(view: Viewport) -> None:
+    """What faces away is left out only where it is never seen; an open mesh is drawn whole."""
+    import trimesh
+
+    from app.window.viewport.streamed import StreamedMesh
+
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.5)
+    faces = np.asarray(ball.faces, np.int32)
+    mesh = StreamedMesh(view.scene, "performer")
+
+    def pictures(kept: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        frame = ready(FrameMesh(np.asarray(ball.vertices), kept), 0, 0)
+        assert frame.closed == (len(kept) == len(faces))
+        taken = []
+        for quick in (False, True):
+            mesh.show(frame, quick=quick)
+            view.redraw()
+            settle(40)
+            taken.append(view.host._rows.copy())
+        return taken[0], taken[1]
+
+    whole, quick = pictures(faces)
+    differ = (whole != quick).any(axis=2).sum()
+    assert differ <= 0.002 * (whole[..., 3] > 0).sum(), f"{differ} pixels, of the outline alone"
+    towards = np.asarray(ball.triangles_center)[:, 1] < -0.2
+    whole, quick = pictures(faces[~towards])
+    np.testing.assert_array_equal(whole, quick)
+    assert (whole[whole.shape[0] // 2, whole.shape[1] // 2, 3]) == 255, "the inside is seen through the hole"

@@ -31,8 +31,8 @@ class StageView:
         from app.window.viewport.streamed import StreamedMesh, StreamedShadow
 
         self.viewport = viewport
-        self._mesh = StreamedMesh(viewport.scene, "mesh")
-        self._shadow = StreamedShadow(viewport.scene, "shadow")
+        self._mesh = StreamedMesh(viewport.scene, "performer")
+        self._shadow = StreamedShadow(viewport.scene, "performer shadow")
         self._ghosts = [StreamedMesh(viewport.scene, f"ghost {k}", opacity=GHOSTLY) for k in range(GHOSTS)]
         self.follow = True
         self.begin()
@@ -54,7 +54,7 @@ class StageView:
 
         While it is moving the shadow is left out, which costs as much as the mesh.
         """
-        self._mesh.show(frame)
+        self._mesh.show(frame, quick=moving)
         for place, ghost in enumerate(self._ghosts):
             if place < len(ghosts):
                 ghost.show(ghosts[place])

@@ -18,7 +18,7 @@ SHADE = (0.055, 0.065, 0.08)
 
 class Shown(Protocol):
     """Vertices and normals (v, 3) float32, faces (m, 3) int32, colours (v, 3) uint8 or None; places (v, 2) float32 in a
-    picture (h, w, 3) uint8, rows from the top, or None for both.
+    picture (h, w, 3) uint8, rows from the top, or None for both. closed : whether its inside is never seen.
     """
 
     vertices: NDArray[np.float32]
@@ -27,6 +27,7 @@ class Shown(Protocol):
     colours: NDArray[np.uint8] | None
     coordinates: NDArray[np.float32] | None
     picture: NDArray[np.uint8] | None
+    closed: bool
 
 
 class StreamedMesh:
@@ -52,9 +53,10 @@ class StreamedMesh:
         look.SetOpacity(opacity)
         self._there = False
 
-    def show(self, frame: Shown) -> None:
-        """Show another frame."""
+    def show(self, frame: Shown, *, quick: bool = False) -> None:
+        """Show another frame; a quick one leaves out what faces away where that is never seen: cheaper, the same."""
         data = self._data
+        self._actor.GetProperty().SetBackfaceCulling(quick and frame.closed)
         _fill(data, frame.vertices, frame.faces)
         data.GetPointData().SetNormals(numpy_to_vtk(frame.normals))
         data.GetPointData().SetScalars(None if frame.colours is None else numpy_to_vtk(frame.colours))
