@@ -10,6 +10,7 @@ import pytest
 
 import tvmedit
 from resources.performer import Capture, Part, body_capsules, body_joints, body_mesh, motion_pose, perform
+from tests.benchmarks.carried import blended_cuts, worst_steps
 from tests.benchmarks.record import Recorder, cpu_seconds
 from tests.tvmedit.test_paths import every_path, random_weights
 from tvmedit.cuts import GroundMove, Registration, align_frames
@@ -116,9 +117,13 @@ def test_cuts_turn_nobody_round_and_do_not_jump(bench: Recorder) -> None:
         baseline_name="free yaw",
         note="72 cuts",
     )
-    ratios, raw = [], []
+    ratios, raw, smooth = [], [], []
     for keys in ([0, 1, 3, 5], [6, 4, 0, 8], [2, 5, 7, 3]):
         performance = tvmedit.compose(graph, keys, repeats={0: 2})
+        blends = blended_cuts(graph, performance, lambda _, frame: capture.mesh(frame))
+        smooth.append(
+            worst_steps(graph, performance, lambda _, f: capture.joints[f], lambda _, f: capture.mesh(f), blends)[1]
+        )
         placed = [performance.place(k, capture.joints[f]) for k, (_, f) in enumerate(performance.frames)]
         filmed = [capture.joints[f] for _, f in performance.frames]
         for joints, kept in ((placed, ratios), (filmed, raw)):
@@ -132,6 +137,14 @@ def test_cuts_turn_nobody_round_and_do_not_jump(bench: Recorder) -> None:
         baseline=max(raw),
         baseline_name="as filmed",
         note="three performances, the worst; each " + ", ".join(f"{r:.2f}" for r in ratios),
+    )
+    bench.record(
+        "tvm joint step at blended cuts over the largest within motions",
+        max(smooth),
+        asked=1.2,
+        baseline=max(ratios),
+        baseline_name="placed, not blended",
+        note="three performances, the worst; each " + ", ".join(f"{r:.2f}" for r in smooth),
     )
 
 
