@@ -78,6 +78,19 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
     assert all(each.property("finished") for each in renderers), "a render window is still open"
 
 
+@pytest.fixture(autouse=True)
+def display_of_its_own(qapp: QApplication, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """On a real screen only one window has the keys: tests of other processes wait for this one to end."""
+    if QApplication.platformName() != "xcb":
+        yield
+        return
+    import fcntl
+
+    with (tmp_path_factory.getbasetemp().parent / "display.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 @pytest.fixture(scope="session")
 def small_project(tmp_path_factory: pytest.TempPathFactory, private_places: None) -> Path:
     """A project folder with a short clip, tracks, contacts, known cameras and a paired character; all solved."""
