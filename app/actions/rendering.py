@@ -8,7 +8,7 @@ from pathlib import Path
 
 import attrs
 
-from app.actions.compositing import Standing
+from app.actions.compositing import SheetForm, Standing
 from app.actions.films import COMPARISONS, View, compare_film, render_film, render_sheets
 from app.actions.results import Form, export_animation
 from app.actions.session import Session
@@ -31,7 +31,7 @@ class FilmOrder:
     standing : how the characters stand in the filmed scene.
     dim : how far the filmed frames fade towards grey, 0 to 1. points : whether tracked points are drawn.
     frames : first and last frame, None for all.
-    alpha : pictures of the characters and their shadows alone, with alpha, in place of a film.
+    alpha : pictures of the characters and their shadows alone, with alpha, in place of a film; ``form`` says which.
     """
 
     characters: tuple[str, ...]
@@ -41,6 +41,7 @@ class FilmOrder:
     points: bool = False
     frames: tuple[int, int] | None = None
     alpha: bool = False
+    form: SheetForm = "png"
 
     def stages(self, session: Session) -> tuple[Stage, ...]:
         """The stages whose results it needs."""
@@ -62,12 +63,16 @@ def write_film(session: Session, order: FilmOrder, target: Path, progress: Progr
             standing=order.standing, frames=order.shown(), progress=rest,
         )  # fmt: skip
         return target
-    with replacing_numbered(target, "", ".png") as folder:
-        render_sheets(session, order.characters, folder, standing=order.standing, frames=order.shown(), progress=rest)
+    suffix = f".{order.form}"
+    with replacing_numbered(target, "", suffix) as folder:
+        render_sheets(
+            session, order.characters, folder, standing=order.standing, frames=order.shown(), form=order.form,
+            progress=rest,
+        )  # fmt: skip
         names = {path.name for path in folder.iterdir()}
     for path in target.iterdir():
         # Frames of an earlier, longer sequence would be played after the new ones.
-        if re.fullmatch(r"\d{5,}\.png", path.name) and path.name not in names:
+        if re.fullmatch(rf"\d{{5,}}{re.escape(suffix)}", path.name) and path.name not in names:
             path.unlink()
     return target
 

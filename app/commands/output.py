@@ -41,6 +41,7 @@ CHARACTER = click.option("--character", "name", help="Which character, where the
 @click.option("--light-turn", type=float, default=0.0, help="Turn the main light, degrees clockwise from above.")
 @click.option("--light-lift", type=float, default=0.0, help="Raise the main light, degrees.")
 @click.option("--brightness", type=click.FloatRange(0, 10), default=1.0, help="Factor on their light.")
+@click.option("--warmth", type=click.FloatRange(-1, 1), default=0.0, help="Tone of their light, -1 blue to 1 amber.")
 @click.option("--shadow-strength", type=click.FloatRange(0, 3), default=1.0, help="Factor on their shadows' darkness.")
 @click.pass_obj
 def render(

@@ -225,8 +225,10 @@ def test_pictures_with_alpha_need_no_view(measured: Shell, tmp_path: Path) -> No
     """The other form: what has no meaning for it is off; numbered pictures of the range in a folder."""
     dialog = opened(measured)
     options = dialog.film.options
-    choose(options.form, "Pictures with alpha")
-    made(dialog, lambda order, *_: order.alpha)
+    choose(options.form, "EXR with alpha")
+    made(dialog, lambda order, *_: order.form == "exr")
+    choose(options.form, "PNG with alpha")
+    made(dialog, lambda order, *_: order.alpha and order.form == "png")
     assert not options.view.isEnabled()
     assert not options.switches["plate"].isEnabled()
     range_of(dialog, 4, 6)

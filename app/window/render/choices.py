@@ -7,7 +7,7 @@ from typing import Any
 
 import attrs
 
-from app.actions.compositing import SHUTTER, Standing
+from app.actions.compositing import SHUTTER, SheetForm, Standing
 from app.actions.films import View
 from app.actions.rendering import FilmOrder
 from app.window import settings
@@ -21,10 +21,11 @@ class FilmChoices:
 
     Attributes
     ----------
+    form : film, or png or exr for pictures with alpha.
     ranged : whether only the frames first to last are filmed. blurred : whether the shutter is open at all.
     """
 
-    alpha: bool = False
+    form: str = "film"
     view: View = "video"
     occlusion: bool = True
     shadow: bool = True
@@ -41,6 +42,11 @@ class FilmChoices:
     dim: float = 0.0
     points: bool = False
     ranged: bool = False
+
+    @property
+    def alpha(self) -> bool:
+        """Whether pictures with alpha are written."""
+        return self.form != "film"
 
     def order(self, characters: tuple[str, ...], frames: tuple[int, int]) -> FilmOrder:
         """The film that is meant, of these characters; ``frames`` count where a range is chosen."""
@@ -60,7 +66,8 @@ class FilmChoices:
         view: View = "video" if self.alpha else self.view
         shown = frames if self.ranged else None
         if self.alpha:
-            return FilmOrder(characters, standing=standing, frames=shown, alpha=True)
+            form: SheetForm = "exr" if self.form == "exr" else "png"
+            return FilmOrder(characters, standing=standing, frames=shown, alpha=True, form=form)
         return FilmOrder(characters, view, standing, self.dim / 100, self.points, shown)
 
 

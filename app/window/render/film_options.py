@@ -13,7 +13,7 @@ from app.window.controls import NumberField, NumberRange, Row, ScrollColumn, lab
 from app.window.render.choices import remember, remembered
 from app.window.render.page import WIDE, narrow
 
-FORMS = (("Film (mp4)", False), ("Pictures with alpha (PNG)", True))
+FORMS = (("Film (mp4)", "film"), ("PNG with alpha", "png"), ("EXR with alpha", "exr"))
 VIEWS = (("Over the video", "video"), ("From the side", "side"), ("Both, side by side", "both"))
 SWITCHES: dict[str, tuple[str, str]] = {
     "occlusion": ("Hidden by what stands before it", "What of the background is nearer hides the characters"),
@@ -56,7 +56,7 @@ class FilmOptions(ScrollColumn):
             self.form.addItem(text, value)
         for text, kind in VIEWS:
             self.view.addItem(text, kind)
-        for box, name, words in ((self.form, "alpha", "What is written"), (self.view, "view", "Which view")):
+        for box, name, words in ((self.form, "form", "What is written"), (self.view, "view", "Which view")):
             narrow(box, words)
             box.setCurrentIndex(max(box.findData(getattr(self.choices, name)), 0))
             box.currentIndexChanged.connect(lambda _, box=box, name=name: self._set(name, box.currentData()))

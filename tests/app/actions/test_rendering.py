@@ -82,6 +82,10 @@ def test_pictures_with_alpha_replace_an_older_longer_sequence(solved: Session, t
     (folder / "notes.txt").write_text("mine")
     write_film(solved, order_of(solved, alpha=True), folder, silent)
     assert sorted(path.name for path in folder.iterdir()) == ["00004.png", "00005.png", "00006.png", "notes.txt"]
+    pytest.importorskip("OpenEXR")
+    write_film(solved, order_of(solved, alpha=True, form="exr", frames=(5, 5)), folder, silent)
+    assert (folder / "00005.exr").stat().st_size > 1000
+    assert (folder / "00005.png").is_file(), "the other form stays"
     shown = Previewer().picture(solved, order_of(solved, alpha=True), 5)
     assert shown.shape[2] == 3
     assert {96, 128} <= set(np.unique(chequered(np.zeros((30, 30, 4), np.uint8))))
