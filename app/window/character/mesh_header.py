@@ -6,7 +6,6 @@ from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QMenu, QSizePolicy, QSlider, QToolButton, QWidget
 
-from app.actions.films import COMPARISONS
 from app.window.controls import icon_button, toggle
 from app.window.viewport.layers import FILM_ONLY, LAYERS, SPACE_ONLY, Layers
 
@@ -118,8 +117,8 @@ class MeshHeader(QWidget):
         """What can be shown beside the result."""
         menu = self._menu()
         menu.addSection("Beside the result")
-        for name, text in ((BEFORE, "Before the edits"), *((name, _title(name)) for name in COMPARISONS)):
-            action = self._entry(menu, text, name in self.variants)
+        for name in _variants():
+            action = self._entry(menu, title_of(name), name in self.variants)
             action.toggled.connect(lambda on, name=name: self._vary(name, on))
         menu.addSeparator()
         menu.addAction("All of them", lambda: self.choose_all(True))
@@ -137,12 +136,12 @@ class MeshHeader(QWidget):
     def _vary(self, name: str, on: bool) -> None:
         kept = [each for each in self.variants if each != name]
         wanted = {*kept, name} if on else set(kept)
-        self.variants = [each for each in (BEFORE, *COMPARISONS) if each in wanted]
+        self.variants = [each for each in _variants() if each in wanted]
         self.compared.emit(list(self.variants))
 
     def choose_all(self, on: bool) -> None:
         """Compare with everything there is, or with nothing."""
-        self.variants = [BEFORE, *COMPARISONS] if on else []
+        self.variants = _variants() if on else []
         self.compared.emit(list(self.variants))
 
     def choose_heat(self, name: str) -> None:
@@ -168,11 +167,16 @@ class MeshHeader(QWidget):
         menu.popup(owner.mapToGlobal(QPoint(0, owner.height() + 2)))
 
 
-def _title(variant: str) -> str:
-    text = COMPARISONS[variant]
-    return text[0].upper() + text[1:]
+def _variants() -> list[str]:
+    """What can be compared with; the films' own list, which is loaded late."""
+    from app.actions.films import COMPARISONS
+
+    return [BEFORE, *COMPARISONS]
 
 
 def title_of(variant: str) -> str:
     """What a comparison is called."""
-    return "Before the edits" if variant == BEFORE else _title(variant)
+    from app.actions.films import COMPARISONS
+
+    text = "before the edits" if variant == BEFORE else COMPARISONS[variant]
+    return text[0].upper() + text[1:]
