@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 CROWD, TANGLE = 60, 180
 """Above so many motions they stand in groups; above so many transitions only the chosen motion's are drawn fully."""
-FAINT = 400
+FAINT = 200
 """So many pruned transitions are shown at most while the graph's size is dragged."""
 Places = Mapping[int, tuple[float, float]]
 

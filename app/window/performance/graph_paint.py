@@ -15,7 +15,7 @@ Thumbnail = Callable[[int], QImage | None]
 SOLID, ROUND = Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap
 PICTURED, NAMED = 34.0, 30.0
 """Least diameter in pixels at which a node shows its picture, and every node its name."""
-THIN = 500
+THIN = 400
 """So many edges of one kind are drawn thinly at most, the cheapest first."""
 SHARES = (0.42, 0.55, 0.3, 0.68, 0.2, 0.8)
 """Where along an edge its cost may stand, the best first."""
