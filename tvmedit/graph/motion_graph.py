@@ -30,7 +30,7 @@ class MotionGraph:
     ----------
     nodes : tuple of Node
     weights : (k, k) float64
-        Cost of the cut from row to column in frame steps of the motions (eq. 12; "robust": of the median motion); inf
+        Cost of the cut from row to column in frame steps of the motions (eq. 12; "robust": of the average motion); inf
         where pruned.
     transitions : (k, k, 2) int64
         Last frame played of the row's sequence and first frame played of the column's; -1 on the diagonal.
@@ -108,7 +108,7 @@ def motion_graph(
         {(sequence, cluster): number of the texton}: the user's own representatives; or the nodes themselves as
         (sequence, first, last).
     limit : float, optional
-        "robust": weight at mu = 1, in frame steps of the motions; default: as far as the median one
+        "robust": weight at mu = 1, in frame steps of the motions; default: as far as the average one
         moves in 0.1 s.
 
     Returns
@@ -163,11 +163,11 @@ def _scale(intensities: Array, method: GraphMethod) -> Array:
     """What node distances are measured in: eq. 12 takes the intensity of the motion that is left.
 
     Out of a wild motion into a calm one any jump would then be cheap, and a path that takes it jumps in the end;
-    "robust" takes the median of all motions, so that weights are in proportion to what the body jumps.
+    "robust" takes the mean of all motions, so that weights are in proportion to what the body jumps.
     """
     if method == "paper":
         return intensities[:, None]
-    return np.full((1, 1), np.median(intensities))
+    return np.full((1, 1), intensities.mean())
 
 
 def _check_mu(mu: float) -> None:

@@ -25,7 +25,7 @@ def database(document: Document) -> Stage:
     chosen = tuple(sequence.representatives for sequence in document.sequences)
     inputs = (choice.graph, chosen)
     blocked = _why_not(document.sequences)
-    return Stage("database", "Finding transitions", _database, inputs, needs, version=2, blocked=blocked, weight=1.0)
+    return Stage("database", "Finding transitions", _database, inputs, needs, version=3, blocked=blocked, weight=1.0)
 
 
 def graph(document: Document) -> Stage:
