@@ -29,7 +29,7 @@ def check_vertices(vertices: Any, frame: int) -> Array:
         raise InputError(
             f"Frame {frame} has {count} vertices that are not finite numbers: repair or leave out that frame."
         )
-    if not float(np.abs(points).max()) < 1e12:
+    if not max(float(points.max()), -float(points.min())) < 1e12:
         raise InputError(f"Frame {frame} has vertices more than 1e12 units away: repair or leave out that frame.")
     return points
 
