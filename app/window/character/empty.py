@@ -19,12 +19,11 @@ class Empty(QWidget):
         column = QVBoxLayout(self)
         column.setSpacing(12)
         column.addStretch(2)
-        picture = QLabel()
-        picture.setPixmap(icons.pixmap("character", "text3", 56))
+        column.addWidget(Pictogram("character", size=56))
         self.sentence = label("Choose a character mesh.", "brand")
         self.how = label("It will move as the filmed subject does. A mesh can be dropped here as well.", "label")
         self.tracks = label("No tracks yet: add points in Video (F1).", "label")
-        for widget in (picture, self.sentence, self.how, self.tracks):
+        for widget in (self.sentence, self.how, self.tracks):
             widget.setAlignment(Qt.AlignmentFlag.AlignCenter)
             column.addWidget(widget)
         self.how.setWordWrap(True)

@@ -48,7 +48,7 @@ class CharacterInspector(ScrollColumn):
         self.vertex_name, self.follows, self.place = self.vertex.name, self.vertex.follows, self.vertex.place
         self.mute_button, self.unmove_button = self.vertex.mute_button, self.vertex.unmove_button
         self.automatic, self.run, self.forget = self.moves.automatic, self.moves.run, self.moves.forget
-        self.frames, self.scale = self.moves.list, self.place_in_first.scale
+        self.frames, self.scale, self.up = self.moves.list, self.place_in_first.scale, self.place_in_first.up
 
     def show_character(self, project: Project, place: Place3 | None, *, mode: str = "", copied: bool = False) -> None:
         """Show the selected character, and the place of its selected vertex in the frame shown."""

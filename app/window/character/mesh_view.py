@@ -9,27 +9,18 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, Signal
-from PySide6.QtGui import QImage, QPainter, QResizeEvent
+from PySide6.QtGui import QImage, QResizeEvent
 
 from app.actions.heat import Heat
 from app.window.background_call import BackgroundCalls
 from app.window.character.empty import Empty
-from app.window.character.ghosts import paint_ghosts
 from app.window.character.mesh_header import MeshHeader
-from app.window.character.overlays import (
-    Trail,
-    paint_camera,
-    paint_heat_legend,
-    paint_legend,
-    paint_points,
-    paint_trails,
-)
+from app.window.character.over_panes import OverPanes
 from app.window.character.panes import SPLIT, Pane, Panes
 from app.window.controls import ErrorBar, Panel
 from app.window.picture_notes import PictureNotes
 from app.window.viewport import Gizmo, Handle, Viewport
 from app.window.viewport.hosts import Choice
-from app.window.viewport.lens import Lens
 from app.window.work import details
 from imitation.geometry import Camera
 
@@ -53,10 +44,8 @@ class MeshView(Panel):
         super().__init__("Character", " ")
         self._calls = BackgroundCalls(self)
         self._loading = False
-        self.ghosts: Callable[[], Sequence[tuple[int, Array]]] = tuple
-        self.trails: Callable[[bool], Sequence[Trail]] = lambda film: ()
+        self.over = OverPanes()
         self.calm: Callable[[], bool] = lambda: True
-        self.heat: Heat | None = None
         self._mesh: tuple[int, int] = (0, 0)
         self._frame = 0
         self._ground: tuple[float, ...] = ()
@@ -69,7 +58,7 @@ class MeshView(Panel):
         self.ghost_button, self.split_button = self.bar.ghost_button, self.bar.split_button
         self.bar.looked.connect(self.look)
         self.bar.faded.connect(self._fade)
-        self.bar.ghosted.connect(lambda _: self._over())
+        self.bar.ghosted.connect(self._ghost)
         self.bar.parted.connect(self.part)
         self.bar.layer.connect(self._layer)
         self.bar.fitted.connect(self.fit)
@@ -86,6 +75,11 @@ class MeshView(Panel):
         self.panes.hovered.connect(self.pointed)
         self.look_buttons["orbit"].setChecked(True)
         self.opacity.hide()
+
+    @property
+    def heat(self) -> Heat | None:
+        """What the colours of the mesh stand for now, None for the character's own."""
+        return self.over.heat
 
     @property
     def viewport(self) -> Viewport | None:
@@ -133,11 +127,7 @@ class MeshView(Panel):
         view.layers = self.bar.layers
         view.mesh_opacity = self.opacity.value() / 100
         if pane.own:
-            view.notes = (
-                self._paint_ghosts,
-                lambda painter, lens: self._paint_trails(painter, lens, view),
-                lambda painter, lens: self._paint_legends(painter, lens, pane),
-            )
+            view.notes = self.over.notes(pane)
         if self._background is not None:
             view.scene.set_background(*self._background)
         if self._scene is not None:
@@ -328,7 +318,7 @@ class MeshView(Panel):
 
     def show_heat(self, heat: Heat | None) -> None:
         """Colour the mesh, or give it its own colours."""
-        self.heat = heat
+        self.over.heat = heat
         for pane in self.panes.own:
             if heat is None or len(heat.colours) == len(pane.view.vertices):
                 pane.view.paint(None if heat is None else heat.colours)
@@ -363,6 +353,10 @@ class MeshView(Panel):
         for pane in self.panes.panes.values():
             pane.view.show_layers()
 
+    def _ghost(self, on: bool) -> None:
+        self.over.ghosting = on
+        self._over()
+
     def _over(self) -> None:
         for pane in self.panes.own:
             pane.view.surface.update()
@@ -372,30 +366,6 @@ class MeshView(Panel):
         super().changeEvent(event)
         if event.type() == QEvent.Type.StyleChange and hasattr(self, "panes"):
             self._over()
-
-    # painting over -----------------------------------------------------------------------------------------------
-
-    def _paint_ghosts(self, painter: QPainter, lens: Lens) -> None:
-        if self.ghost_button.isChecked():
-            paint_ghosts(painter, lens, self.ghosts())
-
-    def _paint_trails(self, painter: QPainter, lens: Lens, view: Viewport) -> None:
-        if view.carrying:
-            return  # the hand's own vertex is what counts now, and every millisecond
-        if view.shows("tracks"):
-            if view.through_camera:
-                paint_points(painter, self.trails(True), view.view.scale, view.view.x, view.view.y)
-            else:
-                paint_trails(painter, lens, self.trails(False))
-        if view.shows("path") and not view.through_camera and view.camera is not None and view.picture is not None:
-            reach = 0.25 * float(np.linalg.norm(view.scene.extent[1] - view.scene.extent[0]))
-            paint_camera(painter, lens, view.camera, (view.picture.width(), view.picture.height()), reach)
-
-    def _paint_legends(self, painter: QPainter, lens: Lens, pane: Pane) -> None:
-        if pane.view.gizmo is None and pane.kind == "main" and pane.view.handles and not pane.view.carrying:
-            paint_legend(painter, lens, ghosts=self.ghost_button.isChecked())
-        if self.heat is not None:
-            paint_heat_legend(painter, lens, self.heat)
 
     def finish(self) -> None:
         """Close the render windows."""

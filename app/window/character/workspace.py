@@ -69,8 +69,8 @@ class CharacterWorkspace(Workspace):
         self.errors = self.mesh.errors
         self.inspector = CharacterInspector()
         self.warnings = WarningLine()
-        self.mesh.ghosts = self._ghosts
-        self.mesh.trails = self._trails
+        self.mesh.over.ghosts = self._ghosts
+        self.mesh.over.trails = self._trails
         self.mesh.calm = lambda: self.project is None or not self.project.progress
         self._lay_out()
         self.events = Events(self)
