@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import groupby
+from itertools import combinations, pairwise
 
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QKeyEvent
@@ -207,14 +207,16 @@ class KeyRow(QWidget):
 
 
 def _shared_out() -> list[list[tuple[str, list[Command]]]]:
-    """The groups in as many columns as there is room for, about equally high, in their order."""
-    groups = [(name, list(commands)) for name, commands in groupby(COMMANDS, key=lambda each: each.group)]
-    heights = [HEADING + ROW * len(commands) for _, commands in groups]
-    limit, columns, used = sum(heights) / COLUMNS, [[]], 0.0
-    for group, height in zip(groups, heights, strict=True):
-        if columns[-1] and used + height / 2 > limit and len(columns) < COLUMNS:
-            columns.append([])
-            used = 0.0
-        columns[-1].append(group)
-        used += height
-    return columns
+    """The groups in their order, cut into columns of which the longest is as short as can be."""
+    groups: dict[str, list[Command]] = {}
+    for command in COMMANDS:
+        groups.setdefault(command.group, []).append(command)
+    entries = list(groups.items())
+
+    def columns(cuts: tuple[int, ...]) -> list[list[tuple[str, list[Command]]]]:
+        return [entries[begin:end] for begin, end in pairwise((0, *cuts, len(entries)))]
+
+    def longest(cuts: tuple[int, ...]) -> int:
+        return max(sum(HEADING + ROW * len(commands) for _, commands in column) for column in columns(cuts))
+
+    return columns(min(combinations(range(1, len(entries)), COLUMNS - 1), key=longest))
