@@ -20,6 +20,8 @@ from imitation.errors import InputError, NoSolution
 if TYPE_CHECKING:
     from imitation.depth import Background
 
+STRAYS = 0.04
+"""Residual, as a share of the distance, from which on the measured background is not believed under a contact."""
 SOUNDINGS = 5
 """Frames of a contact in which the background under it is asked."""
 FIRM = 0.5
@@ -147,15 +149,20 @@ def place_on_background(
         except NoSolution as refusal:
             reason = str(refusal)
             continue
+        if residual > STRAYS * float(world.cameras[frame].depth(place)):
+            reason = "The measured background strays there."
+            continue
         places.append(place)
         off.append(residual)
-    if not places:
-        instead = place_contact(contact, name, track, choice, world)
-        return attrs.evolve(instead, ground=f"{instead.ground}, for {reason[0].lower()}{reason[1:].rstrip('.')}")
-    place = np.median(np.array(places), axis=0)
-    apart = np.linalg.norm(np.array(places) - place, axis=1)
-    residual = float(np.sqrt(np.mean(np.square(off)) + np.mean(np.square(apart))))
-    return PlacedContact(first, last, place, "the measured background", residual)
+    if places:
+        place = np.median(np.array(places), axis=0)
+        apart = np.linalg.norm(np.array(places) - place, axis=1)
+        residual = float(np.sqrt(np.mean(np.square(off)) + np.mean(np.square(apart))))
+        if residual <= STRAYS * float(world.cameras[frames[0]].depth(place)):
+            return PlacedContact(first, last, place, "the measured background", residual)
+        reason = "The measured background differs from frame to frame there."
+    instead = place_contact(contact, name, track, choice, world)
+    return attrs.evolve(instead, ground=f"{instead.ground}, for {reason[0].lower()}{reason[1:].rstrip('.')}")
 
 
 def agreed(

@@ -115,3 +115,17 @@ def test_a_contact_on_the_measured_background_says_how_sure_it_is(world: World) 
     assert "the ground plane" in instead.ground
     assert instead.ground.endswith("for no background depth is known near pixel (3, 4) of frame 2")
     np.testing.assert_allclose(instead.place, place, atol=1e-6)
+
+    class Straying:
+        def place(self, frame: int, pixel: np.ndarray) -> tuple[np.ndarray, float]:
+            return place, 0.3
+
+    class Apart:
+        def place(self, frame: int, pixel: np.ndarray) -> tuple[np.ndarray, float]:
+            return place * (1 + frame), 0.01
+
+    for known, why in ((Straying(), "strays there"), (Apart(), "differs from frame to frame")):
+        choice = WorldChoice(ground="background")
+        instead = place_on_background(contact, "paw", track, choice, world, known)  # type: ignore[arg-type]
+        assert why in instead.ground
+        np.testing.assert_allclose(instead.place, place, atol=1e-6)
