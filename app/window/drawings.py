@@ -14,6 +14,8 @@ from pathlib import Path
 from PySide6.QtCore import QPoint, QRect, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QIcon, QIconEngine, QPainter, QPixmap
 
+from app.window import theme
+
 FILL = 0.875
 """Height of the letters in the square of the icon."""
 
@@ -38,22 +40,25 @@ def _family() -> str:
 
 
 class Drawing(QIconEngine):
-    """One letter in three colours: usually, switched on, and where nothing can be done."""
+    """One letter in three colours: usually, switched on, and where nothing can be done.
+
+    A colour is a token of the look, taken when it is drawn, so that another look is seen at once; or a literal one.
+    """
 
     def __init__(self, name: str, normal: str, checked: str, disabled: str) -> None:
         super().__init__()
         self.given = (name, normal, checked, disabled)
         self.letter = chr(int(_letters()[name], 16))
-        self.colours = QColor(normal), QColor(checked), QColor(disabled)
 
     def paint(self, painter: QPainter, rect: QRect, mode: QIcon.Mode, state: QIcon.State) -> None:
         """Draw the letter in the middle of a square."""
-        normal, checked, disabled = self.colours
+        _, normal, checked, disabled = self.given
+        token = disabled if mode == QIcon.Mode.Disabled else checked if state == QIcon.State.On else normal
         face = QFont(_family())
         face.setPixelSize(max(round(FILL * rect.height()), 1))
         painter.save()
         painter.setFont(face)
-        painter.setPen(disabled if mode == QIcon.Mode.Disabled else checked if state == QIcon.State.On else normal)
+        painter.setPen(QColor(token) if token.startswith("#") else theme.active().colour(token))
         painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, self.letter)
         painter.restore()
 

@@ -8,7 +8,6 @@ from importlib.resources import as_file, files
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QIcon, QPixmap
 
-from app.window import theme
 from app.window.drawings import Drawing
 
 NAMES = {
@@ -107,14 +106,9 @@ NAMES = {
 
 
 @cache
-def _icon(name: str, normal: str, checked: str, disabled: str) -> QIcon:
-    return QIcon(Drawing(NAMES[name], normal, checked, disabled))
-
-
 def icon(name: str, token: str = "text2", checked: str = "accent") -> QIcon:
     """The icon of a meaning in the colour of a token, of another token where it is switched on."""
-    look = theme.active()
-    return _icon(name, look.colour(token).name(), look.colour(checked).name(), look.line2)
+    return QIcon(Drawing(NAMES[name], token, checked, "line2"))
 
 
 def pixmap(name: str, token: str = "text2", size: int = 16) -> QPixmap:

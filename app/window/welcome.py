@@ -7,10 +7,10 @@ from pathlib import Path
 
 from PySide6.QtCore import QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QIcon, QPainter, QPixmap, QShowEvent
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app.window import icons, settings, theme
-from app.window.controls import ErrorBar, Panel, button, label
+from app.window.controls import ErrorBar, Panel, Pictogram, button, label
 
 CARD = QSize(176, 99)
 SHOWN = 4
@@ -31,15 +31,14 @@ class Welcome(Panel):
         column = QVBoxLayout(body)
         column.setSpacing(12)
         column.addStretch(2)
-        picture = QLabel()
-        picture.setPixmap(icons.pixmap("video", "text3", 56))
+        column.addWidget(Pictogram("video", size=56))
         sentence = label("Open a video, or drop one here.", "brand")
         how = label(
             "Motionwright follows points that you click on a filmed animal or person, and moves a character like it.\n"
             "Captured sequences of meshes are cut into motions and composed anew: drop a folder of them.",
             "label",
         )
-        for widget in (picture, sentence, how):
+        for widget in (sentence, how):
             widget.setAlignment(Qt.AlignmentFlag.AlignCenter)
             column.addWidget(widget)
         row = QHBoxLayout()

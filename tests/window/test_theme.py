@@ -126,3 +126,22 @@ def test_panels_do_not_paint_over_what_stands_in_them(qapp: QApplication) -> Non
     found = image.pixelColor(primary.geometry().left() + 12, place.y()).name().upper()
     assert found == theme.DARK.accent
     panel.deleteLater()
+
+
+def test_another_look_is_seen_in_icons_that_are_there(qapp: QApplication) -> None:
+    """What was built in the dark look is drawn in the colours of the light one, buttons and large icons alike."""
+    from app.window.controls import Pictogram, icon_button
+
+    button, large = icon_button("undo", "Undo", lambda: None), Pictogram("video")
+    try:
+        for look in LOOKS:
+            theme.apply(qapp, look)
+            for shown, token in (
+                (button.icon().pixmap(QSize(24, 24)).toImage(), "text2"),
+                (large.grab().toImage(), "text3"),
+            ):
+                places = [(x, y) for x in range(shown.width()) for y in range(shown.height())]
+                inked = {shown.pixelColor(*place).name() for place in places}
+                assert QColor(getattr(look, token)).name() in inked, look.name
+    finally:
+        theme.apply(qapp, theme.DARK)

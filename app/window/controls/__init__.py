@@ -3,7 +3,7 @@
 from app.window.controls.buttons import button, icon_button, renew_tooltips, set_tooltip, toggle, tool
 from app.window.controls.chooser import Chooser
 from app.window.controls.error_bar import ErrorBar
-from app.window.controls.labels import Chip, Elided, Header, Row, label, separator
+from app.window.controls.labels import Chip, Elided, Header, Pictogram, Row, label, separator
 from app.window.controls.number import NumberField, NumberRange
 from app.window.controls.panel import Panel, ScrollColumn
 from app.window.controls.swatches import Meter, Swatches
@@ -18,6 +18,7 @@ __all__ = [
     "NumberField",
     "NumberRange",
     "Panel",
+    "Pictogram",
     "Row",
     "ScrollColumn",
     "Swatches",

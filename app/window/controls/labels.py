@@ -6,6 +6,8 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QSizePolicy, QWidget
 
+from app.window import icons
+
 LABEL_WIDTH = 84
 
 
@@ -15,6 +17,21 @@ def label(text: str, role: str = "label") -> QLabel:
     widget.setProperty("role", role)
     widget.setTextFormat(Qt.TextFormat.PlainText)
     return widget
+
+
+class Pictogram(QWidget):
+    """A large icon that stands for what will be here, in the colours of the look of the moment."""
+
+    def __init__(self, name: str, token: str = "text3", size: int = 56) -> None:
+        super().__init__()
+        self._icon = icons.icon(name, token)
+        self.setFixedHeight(size)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Draw it in the middle."""
+        painter = QPainter(self)
+        self._icon.paint(painter, self.rect())
+        painter.end()
 
 
 class Elided(QLabel):

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QMenu, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
-from app.window import icons
-from app.window.controls import ErrorBar, Panel, button, icon_button, label, set_tooltip
+from app.window.controls import ErrorBar, Panel, Pictogram, button, icon_button, label, set_tooltip
 from app.window.keys import shown_key
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.graph_canvas import GraphCanvas
@@ -35,11 +34,10 @@ class Nothing(QWidget):
         column = QVBoxLayout(self)
         column.setSpacing(12)
         column.addStretch(2)
-        picture = QLabel()
-        picture.setPixmap(icons.pixmap("graph", "text3", 48))
+        column.addWidget(Pictogram("graph", size=48))
         self.sentence = label(NOTHING, "brand")
         self.how = label(HOW, "label")
-        for each in (picture, self.sentence, self.how):
+        for each in (self.sentence, self.how):
             each.setAlignment(Qt.AlignmentFlag.AlignCenter)
             column.addWidget(each)
         for each in (self.sentence, self.how):

@@ -75,7 +75,7 @@ class Library(Panel):
         words = label(EMPTY, "caption")
         words.setWordWrap(True)
         column.addWidget(words)
-        column.addWidget(button("Add a folder…", self.ask_folder, primary=True, name="add_sequence"))
+        column.addWidget(button("Add a folder…", self.ask_folder, name="add_sequence"))
         return body
 
     # showing -----------------------------------------------------------------------------------------------------
