@@ -167,6 +167,16 @@ def test_cards_are_chosen_renamed_and_removed(composed: Shell) -> None:
     quiet(composed)
 
 
+def test_a_sequence_chosen_elsewhere_is_seen_among_the_cards(composed: Shell) -> None:
+    """Choosing a motion of a sequence whose card lies below scrolls to it."""
+    cards = library(composed).cards
+    for each in composed.project.document.sequences:
+        library(composed).state.select_sequence(each.id)
+        settle()
+        box = cards.box(each.id).toRect()
+        assert cards.visibleRegion().boundingRect().contains(box.center()), each.name
+
+
 def test_structure_is_chosen(composed: Shell) -> None:
     """Method, sensitivity, longest repeat and beta are edits; what hangs on them is found anew."""
     page = composed.pages.in_sight

@@ -66,6 +66,15 @@ class Library(Panel):
         self.facts.measured.connect(self.measure)
         for signal in (state.document_changed, state.results_changed, state.sequence_changed):
             signal.connect(self.refresh)
+        state.sequence_changed.connect(self._bring_into_sight)
+
+    def _bring_into_sight(self, sequence_id: str) -> None:
+        """Scroll to the card that was chosen, wherever that was done."""
+        box = self.cards.box(sequence_id)
+        if not box.isEmpty():
+            QApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest)
+            place = self.cards.mapTo(self.body.widget(), box.center().toPoint())
+            self.body.ensureVisible(place.x(), place.y(), 0, round(box.height() / 2) + 2)
 
     def _empty(self) -> QWidget:
         body = QWidget()
