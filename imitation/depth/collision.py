@@ -78,8 +78,8 @@ class Collider:
         along = (offset * self.normals[safe]).sum(axis=-1)
         # Beside the surface's rim its nearest places say nothing of what lies below: the foot must be on them.
         aside = np.sqrt(np.maximum((offset**2).sum(axis=-1) - along**2, 0))
-        there &= aside <= np.maximum(2.5 * self.spacing, 0.5 * np.abs(along))
-        enough = there.sum(axis=1) >= min(3, there.shape[1])
+        there &= aside <= 2.0 * self.spacing + 0.2 * np.abs(along)
+        enough = 2 * there.sum(axis=1) >= count
         deep = np.full(len(p), np.nan)
         deep[enough] = np.nanmedian(np.where(there[enough], -along[enough], np.nan), axis=1)
         return deep
