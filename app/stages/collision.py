@@ -37,7 +37,7 @@ def penetration(document: Document, character: Character) -> Stage:
         animation.animation(document, character), depth.depth(document), scene.cameras(document),
         tracking.masks(document), scene.world(document),
     )  # fmt: skip
-    return Stage(name, label, _penetration, (document.clip,), needs, weight=6.0)
+    return Stage(name, label, _penetration, (document.clip,), needs, 2, weight=6.0)
 
 
 def _penetration(
