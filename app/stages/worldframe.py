@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 STRAYS = 0.04
 """Residual, as a share of the distance, from which on the measured background is not believed under a contact."""
+UNLIKE = 2.0
+"""Factor between the depths of measured background and local ground from which on the former is not believed."""
 SOUNDINGS = 5
 """Frames of a contact in which the background under it is asked."""
 FIRM = 0.5
@@ -158,9 +160,19 @@ def place_on_background(
         place = np.median(np.array(places), axis=0)
         apart = np.linalg.norm(np.array(places) - place, axis=1)
         residual = float(np.sqrt(np.mean(np.square(off)) + np.mean(np.square(apart))))
-        if residual <= STRAYS * float(world.cameras[frames[0]].depth(place)):
-            return PlacedContact(first, last, place, "the measured background", residual)
-        reason = "The measured background differs from frame to frame there."
+        found = PlacedContact(first, last, place, "the measured background", residual)
+        camera = world.cameras[frames[0]]
+        if residual <= STRAYS * float(camera.depth(place)):
+            try:
+                instead = place_contact(contact, name, track, choice, world)
+            except InputError:
+                return found
+            # What stays hidden through the clip may be measured as the sky beside it: the points nearby know better.
+            if 1 / UNLIKE < float(camera.depth(place)) / float(camera.depth(instead.place)) < UNLIKE:
+                return found
+            reason = "The measured background is far from the recovered points there."
+        else:
+            reason = "The measured background differs from frame to frame there."
     instead = place_contact(contact, name, track, choice, world)
     return attrs.evolve(instead, ground=f"{instead.ground}, for {reason[0].lower()}{reason[1:].rstrip('.')}")
 

@@ -124,7 +124,12 @@ def test_a_contact_on_the_measured_background_says_how_sure_it_is(world: World) 
         def place(self, frame: int, pixel: np.ndarray) -> tuple[np.ndarray, float]:
             return place * (1 + frame), 0.01
 
-    for known, why in ((Straying(), "strays there"), (Apart(), "differs from frame to frame")):
+    class Sky:
+        def place(self, frame: int, pixel: np.ndarray) -> tuple[np.ndarray, float]:
+            return world.cameras[frame].lift(pixel, 60.0), 0.01
+
+    bad = ((Straying(), "strays there"), (Apart(), "differs from frame to frame"), (Sky(), "far from the recovered"))
+    for known, why in bad:
         choice = WorldChoice(ground="background")
         instead = place_on_background(contact, "paw", track, choice, world, known)  # type: ignore[arg-type]
         assert why in instead.ground
