@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from app.actions.compositing import SHUTTER, Standing
+from app.actions.compositing import Standing
 from app.actions.films import render_film
 from app.actions.performing_export import export_performance
 from app.actions.performing_films import film_performance
@@ -39,7 +39,7 @@ def demo(console: Console, folder: Path, fresh: bool) -> None:
         shutil.rmtree(place, ignore_errors=True)
     with closing(_session(place)) as session:
         characters = session.document.characters
-        standing = Standing(occlusion=True, shadow=True, plate=True, shutter=SHUTTER, grain=None)
+        standing = Standing(occlusion=True, shadow=True, plate=True, grain=None)
         stages = tuple(session.stages.animation(each.id) for each in characters)
         # All at once: points are tracked while the cameras are solved, the background is measured while it is animated.
         console.compute(session, "Tracking, cameras, background, motion", (*stages, *standing.stages(session)))
