@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -64,6 +65,9 @@ def _project(path: Path) -> dict[str, Any]:
 
 
 def _sequence(path: Path) -> dict[str, Any]:
+    if path.suffix.lower() in {".glb", ".gltf"}:
+        with open_mesh_frames(path) as frames:
+            return _moving(len(frames), len(frames[0].vertices), len(frames[0].faces), frames.fps)
     if path.is_dir() or path.suffix.lower() == ".npz":
         with open_mesh_frames(path) as frames:
             if not frames.moving and _changes(frames):
@@ -76,13 +80,12 @@ def _sequence(path: Path) -> dict[str, Any]:
                     "fps": float(frames.fps) if frames.fps is not None else "not stated",
                 }
     sequence = read_sequence(path)
-    return {
-        "kind": "mesh sequence",
-        "frames": len(sequence),
-        "vertices": sequence.vertices.shape[1],
-        "faces": len(sequence.faces),
-        "fps": float(sequence.fps),
-    }
+    return _moving(len(sequence), sequence.vertices.shape[1], len(sequence.faces), sequence.fps)
+
+
+def _moving(frames: int, vertices: int, faces: int, fps: Fraction | None) -> dict[str, Any]:
+    rate = float(fps) if fps is not None else "not stated"
+    return {"kind": "mesh sequence", "frames": frames, "vertices": vertices, "faces": faces, "fps": rate}
 
 
 def _changes(frames: MeshFrames) -> bool:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from app.formats.glb import VERTICES, base_primitive, nodes, scene
 from app.formats.gltf import Gltf, GltfWriter, read_gltf, to_srgb
 from app.formats.meshfile import to_int32, y_up_to_z_up, z_up_to_y_up
+from app.formats.posed_glb import PosedGltf
 from app.formats.sequence import MeshSequence, mesh_sequence, vertex_normals
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
@@ -74,18 +75,44 @@ def write_animated_glb(
 
 
 def read_animated_glb(path: Path, data: bytes) -> MeshSequence:
-    """Evaluate the first animation's morph weights at each of its key times.
+    """Evaluate the first animation: morph weights at each of its key times, joints and nodes at each frame.
 
     Raises
     ------
     InputError
-        The file has no animated mesh of morph targets.
+        The file has no animated mesh.
     """
     gltf = read_gltf(path, data)
+    if is_shape_animation(gltf):
+        return shape_animation(gltf)
+    posed = PosedGltf(gltf)
+    first = posed.vertices(0)
+    frames = np.empty((len(posed), *first.shape), np.float32)
+    for frame in range(len(posed)):
+        frames[frame] = posed.vertices(frame)
+    return mesh_sequence(frames, posed.faces, posed.animation.fps, posed.colors, path.name)
+
+
+def is_shape_animation(gltf: Gltf) -> bool:
+    """Whether all that moves are the morph targets of one mesh of one primitive, which no joint holds."""
+    try:
+        channels = [channel for entry in gltf.items("animations")[:1] for channel in entry["channels"]]
+        targets = {(channel["target"].get("node"), channel["target"]["path"]) for channel in channels}
+        drawn = [node for node, _ in nodes(gltf) if "mesh" in node]
+        if len(targets) != 1 or len(drawn) != 1 or "skin" in drawn[0]:
+            return False
+        (node, path), primitives = targets.pop(), gltf.items("meshes")[drawn[0]["mesh"]]["primitives"]
+        return path == "weights" and len(primitives) == 1 and gltf.items("nodes")[node] is drawn[0]
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError):
+        return False
+
+
+def shape_animation(gltf: Gltf) -> MeshSequence:
+    """Evaluate morph weights at each of their key times; see ``is_shape_animation``."""
     try:
         found = _weights(gltf)
         if found is None:
-            raise InputError(f"The file {path.name} has no animation by morph targets: give one, or a PLY folder.")
+            raise KeyError("weights")
         node_index, times, weights = found
         node = gltf.items("nodes")[node_index]
         matrix = next(matrix for each, matrix in nodes(gltf) if each is node)
@@ -96,18 +123,18 @@ def read_animated_glb(path: Path, data: bytes) -> MeshSequence:
         for frame, row in enumerate(weights):
             shape = base + sum((row[k] * targets[k] for k in np.flatnonzero(row)), np.zeros(()))
             frames[frame] = y_up_to_z_up(shape @ matrix[:3, :3].T + matrix[:3, 3])
-        faces = to_int32(gltf.accessor(primitive["indices"]).astype(np.int64).reshape(-1, 3), path.name)
+        faces = to_int32(gltf.accessor(primitive["indices"]).astype(np.int64).reshape(-1, 3), gltf.name)
         colors = None
         if "COLOR_0" in primitive["attributes"]:
             colors = to_srgb(gltf.accessor(primitive["attributes"]["COLOR_0"])[:, :3])
     except InputError:
         raise
     except (ValueError, KeyError, IndexError, TypeError, StopIteration) as error:
-        raise InputError(f"The file {path.name} is not a whole GLB or glTF file: export it again.") from error
+        raise InputError(f"The file {gltf.name} is not a whole GLB or glTF file: export it again.") from error
     stated = gltf.tree["asset"].get("extras", {})
     fps = stated.get("fps") if isinstance(stated, dict) else None
     step = float(np.median(np.diff(times))) if len(times) > 1 else 1 / 25
-    return mesh_sequence(frames, faces, _fraction(fps, step), colors, path.name)
+    return mesh_sequence(frames, faces, _fraction(fps, step), colors, gltf.name)
 
 
 def _fraction(stated: Any, step: float) -> Any:

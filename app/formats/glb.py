@@ -53,7 +53,7 @@ def glb_mesh(gltf: Gltf, name: str) -> MeshFile:
 
 def surfaces(gltf: Gltf) -> list[Surface]:
     """All surfaces of the default scene in the order of its nodes."""
-    return [piece for node, matrix in nodes(gltf) for piece in _primitives(gltf, node, matrix)]
+    return [piece for node, matrix in nodes(gltf) for piece in node_surfaces(gltf, node, matrix)]
 
 
 def write_glb(
@@ -105,24 +105,32 @@ def scene(writer: GltfWriter, mesh: dict[str, Any], name: str = "character") -> 
 def nodes(gltf: Gltf) -> list[tuple[dict[str, Any], NDArray[np.float64]]]:
     """All nodes of the default scene with their matrices (4, 4) to the file's world."""
     every = gltf.items("nodes")
+    matrices = {-1: np.eye(4)}
+    for index, parent in (order := node_order(gltf)):
+        matrices[index] = matrices[parent] @ node_matrix(every[index])
+    return [(every[index], matrices[index]) for index, _ in order]
+
+
+def node_order(gltf: Gltf) -> list[tuple[int, int]]:
+    """Numbers of all nodes of the default scene, each after its parent, with that parent's, -1 for none."""
+    every = gltf.items("nodes")
     scenes = gltf.items("scenes")
     children = {child for node in every for child in node.get("children", [])}
     roots = scenes[gltf.tree.get("scene", 0)].get("nodes", []) if scenes else []
-    stack = [(index, np.eye(4)) for index in (roots or [k for k in range(len(every)) if k not in children])][::-1]
+    stack = [(index, -1) for index in (roots or [k for k in range(len(every)) if k not in children])][::-1]
     found, seen = [], set[int]()
     while stack:
         index, parent = stack.pop()
-        if index in seen:
-            raise ValueError("nodes in a circle")
+        if index in seen or not 0 <= index < len(every):
+            raise ValueError("nodes in a circle, or not there")
         seen.add(index)
-        node = every[index]
-        matrix = parent @ _matrix(node)
-        found.append((node, matrix))
-        stack += [(child, matrix) for child in node.get("children", [])][::-1]
+        found.append((index, parent))
+        stack += [(child, index) for child in every[index].get("children", [])][::-1]
     return found
 
 
-def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
+def node_matrix(node: dict[str, Any]) -> NDArray[np.float64]:
+    """The matrix (4, 4) of a node to its parent."""
     if "matrix" in node:
         return np.array(node["matrix"], np.float64).reshape(4, 4).T
     x, y, z, w = np.array(node.get("rotation", (0, 0, 0, 1)), np.float64)
@@ -137,7 +145,8 @@ def _matrix(node: dict[str, Any]) -> NDArray[np.float64]:
     return matrix
 
 
-def _primitives(gltf: Gltf, node: dict[str, Any], matrix: NDArray[np.float64]) -> list[Surface]:
+def node_surfaces(gltf: Gltf, node: dict[str, Any], matrix: NDArray[np.float64]) -> list[Surface]:
+    """The surfaces of a node's mesh, placed by a matrix to the file's world; none where it has no mesh."""
     if "mesh" not in node:
         return []
     # Exporters cut one surface into materials that share their vertices: it stays one surface.

@@ -62,6 +62,7 @@ class MeshFrames(Sequence[FrameMesh]):
     fps : frames a second, None where the files do not say.
     up : the axis that points up, None where the files do not say. unit : metres a unit, None where unknown.
     moving : whether all frames have the same faces and numbers of vertices by the files' nature.
+    remark : a sentence on what was chosen where the files leave it open; empty if nothing.
     """
 
     name: str
@@ -70,6 +71,7 @@ class MeshFrames(Sequence[FrameMesh]):
     up: Up | None = None
     unit: float | None = None
     moving: bool = False
+    remark: str = ""
 
     @overload
     def __getitem__(self, frame: int) -> FrameMesh: ...

@@ -34,13 +34,24 @@ def read_dressed_glb(path: Path, data: bytes, room: PictureRoom) -> FrameMesh:
     """
     gltf = read_gltf(path, data)
     mesh = check_mesh(glb_mesh(gltf, path.name))
-    try:
-        texture = _texture(gltf, path, room)
-    except (ValueError, KeyError, IndexError, TypeError) as error:
-        raise InputError(f"The file {path.name} has textures that cannot be understood: export it again.") from error
+    texture = glb_texture(gltf, path, room)
     if texture is None:
         return FrameMesh(mesh.vertices, mesh.faces, mesh.colors)
     return attrs.evolve(_sewn(mesh), texture=texture)
+
+
+def glb_texture(gltf: Gltf, path: Path, room: PictureRoom) -> Texture | None:
+    """The pictures on a scene's faces, in the order of ``surfaces``; None where there are none.
+
+    Raises
+    ------
+    InputError
+        They cannot be understood.
+    """
+    try:
+        return _texture(gltf, path, room)
+    except (ValueError, KeyError, IndexError, TypeError) as error:
+        raise InputError(f"The file {path.name} has textures that cannot be understood: export it again.") from error
 
 
 def _texture(gltf: Gltf, path: Path, room: PictureRoom) -> Texture | None:

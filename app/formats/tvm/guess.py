@@ -27,7 +27,7 @@ class Guess:
     ----------
     fps, up, unit : as in ``CapturedSequence``.
     guessed : which of them the files do not say.
-    why : one sentence on the guesses, empty where nothing was guessed.
+    why : sentences on the guesses and on what was chosen, empty where nothing was.
     """
 
     fps: float
@@ -66,7 +66,7 @@ def guess_facts(
             guessed.append("unit")
             words.append(named)
     why = f"Guessed for {frames.name}: {', '.join(words)}; say so if it is otherwise." if words else ""
-    return Guess(float(rate), axis, float(metres), tuple(guessed), why)
+    return Guess(float(rate), axis, float(metres), tuple(guessed), f"{why} {frames.remark}".strip())
 
 
 def _up(ends: NDArray[np.float64]) -> Up:
