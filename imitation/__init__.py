@@ -9,14 +9,14 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from imitation.cameras import CameraPath
 from imitation.errors import Cancelled, InputError, NoSolution
-from imitation.geometry import Camera
 
 if TYPE_CHECKING:
+    from imitation.cameras import CameraPath
     from imitation.cameras.solve import solve_cameras
     from imitation.deformation import Deformer, FrameConstraints
     from imitation.depth import Background, BackgroundMesh, DepthMap, Plate, background_depth, background_mesh
+    from imitation.geometry import Camera
     from imitation.motion import (
         align_character,
         anchor_depths,
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 _PARTS = {
     "Background": "depth",
     "BackgroundMesh": "depth",
+    "Camera": "geometry",
+    "CameraPath": "cameras",
     "DepthMap": "depth",
     "Plate": "depth",
     "background_depth": "depth",

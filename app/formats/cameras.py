@@ -6,12 +6,14 @@ Pixel centres: both put the centre of the top-left pixel at (0.5, 0.5), we at (0
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from app.formats.colmap import read_colmap, write_colmap
 from app.formats.nerfstudio import read_transforms, write_transforms
-from imitation.cameras import CameraPath
 from imitation.errors import InputError
+
+if TYPE_CHECKING:
+    from imitation.cameras import CameraPath
 
 CameraForm = Literal["text", "binary"]
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app.formats.colmap_files import CAMERA_MODELS, Image, Lens, Point, read_model, write_model
 from app.formats.images import natural_key
 from app.formats.pinhole import CENTRE, Array, intrinsics, lost, parameters
-from imitation.cameras import CameraPath
 from imitation.errors import InputError
+
+if TYPE_CHECKING:
+    from imitation.cameras import CameraPath
 
 
 def _pinhole(lens: Lens, where: str) -> tuple[Array, dict[str, float]]:
@@ -29,6 +32,8 @@ def _pinhole(lens: Lens, where: str) -> tuple[Array, dict[str, float]]:
 def read_colmap(folder: Path) -> CameraPath:
     """Read a model; images in the order of their names become frames. See ``read_cameras``."""
     from scipy.spatial.transform import Rotation
+
+    from imitation.cameras import CameraPath
 
     lenses, images, points = read_model(folder)
     images = sorted(images, key=lambda image: natural_key(image.name))

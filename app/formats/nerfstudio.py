@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,8 +12,10 @@ from app.formats.atomic import replacing
 from app.formats.images import natural_key, read_bytes
 from app.formats.pinhole import Array, intrinsics, lost, parameters
 from app.formats.ply import read_ply, write_ply
-from imitation.cameras import CameraPath
 from imitation.errors import InputError
+
+if TYPE_CHECKING:
+    from imitation.cameras import CameraPath
 
 FLIP = np.diag([1.0, -1.0, -1.0])  # OpenGL's camera axes to OpenCV's, and back
 POINTS = "sparse_pc.ply"
@@ -48,6 +50,8 @@ def _lens(frame: dict[str, Any], whole: dict[str, Any], where: str) -> Array:
 
 def read_transforms(path: Path) -> CameraPath:
     """Read transforms.json and the point cloud it names; frames in the order of their names. See ``read_cameras``."""
+    from imitation.cameras import CameraPath
+
     try:
         whole = json.loads(read_bytes(path).tobytes())
     except ValueError as error:

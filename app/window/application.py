@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import importlib
 import os
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from PySide6.QtCore import QMessageLogContext, QTimer, QtMsgType, qInstallMessageHandler
@@ -63,15 +64,16 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
     _need_a_screen()
     os.environ.setdefault("QT_API", "pyside6")
     qInstallMessageHandler(_heard)
-    application = make_application()
-    from app.window.shell import Shell
+    with _kept():
+        application = make_application()
+        from app.window.shell import Shell
 
-    session, refused = _first(path, sample)
-    shell = Shell(session, viewport=viewport or settings.viewport())
-    geometry = settings.settings().value("geometry")
-    if geometry is not None:
-        shell.restoreGeometry(geometry)
-    shell.show()
+        session, refused = _first(path, sample)
+        shell = Shell(session, viewport=viewport or settings.viewport())
+        geometry = settings.settings().value("geometry")
+        if geometry is not None:
+            shell.restoreGeometry(geometry)
+        shell.show()
     if refused:
         shell.tell(refused)
     elif path is not None and not session.titled:
@@ -79,6 +81,17 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
     shell.care.offer_never_saved()
     _after(load_slow_libraries)
     return application.exec()
+
+
+@contextlib.contextmanager
+def _kept() -> Iterator[None]:
+    """Look for no garbage while everything that is made stays; what there is then is never looked through again."""
+    gc.disable()
+    try:
+        yield
+        gc.freeze()
+    finally:
+        gc.enable()
 
 
 def _need_a_screen() -> None:

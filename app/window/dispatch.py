@@ -15,11 +15,11 @@ from app.window import settings, theme
 from app.window.background_state import measure
 from app.window.controls import renew_tooltips
 from app.window.key_map import key_map
-from app.window.key_sheet import KeySheet
 from app.window.keys import COMMANDS, keys_of
-from app.window.settings_dialog import SettingsDialog
 
 if TYPE_CHECKING:
+    from app.window.key_sheet import KeySheet
+    from app.window.settings_dialog import SettingsDialog
     from app.window.shell import Shell
 
 
@@ -77,14 +77,24 @@ class Dispatch(QObject):
             "history": lambda: shell.side.ask_for("history"),
             "log": lambda: shell.side.ask_for("log"),
             "light": self.switch_look,
-            "keys": lambda: self._show(KeySheet),
-            "settings": lambda: self._show(SettingsDialog),
+            "keys": self._keys,
+            "settings": self._settings,
         }
 
     def _render(self) -> None:
         from app.window.render import open_render
 
         open_render(self.shell)
+
+    def _keys(self) -> None:
+        from app.window.key_sheet import KeySheet
+
+        self._show(KeySheet)
+
+    def _settings(self) -> None:
+        from app.window.settings_dialog import SettingsDialog
+
+        self._show(SettingsDialog)
 
     def _show(self, kind: type[KeySheet | SettingsDialog]) -> None:
         """Show a sheet; the one that is open already comes to the front."""

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
 
 from app.actions.session import Session
 from app.model.document import Document
-from app.window import icons, settings
+from app.window import icons, settings, theme
 from app.window.background_call import BackgroundCalls
 from app.window.care import Care
 from app.window.character import CharacterWorkspace
@@ -44,17 +44,11 @@ class Shell(QMainWindow):
         self.setMinimumSize(1180, 720)
         self.resize(1440, 900)
         self.setAcceptDrops(True)
-        self.bar, self.status, self.timeline = TopBar(), StatusLine(), TimelinePanel()
-        self.video, self.character, self.welcome = VideoWorkspace(), CharacterWorkspace(viewport), Welcome()
-        self.performance = PerformanceWorkspace(viewport)
-        pages = {"video": self.video, "character": self.character, "performance": self.performance}
-        self.pages = Pages(pages, self.welcome)
-        self.side = SidePanel()
         self.calls = BackgroundCalls(self)
         self.files = FileCommands(self)
-        self.care = Care(self)
+        with theme.bare():
+            self._build(viewport)
         self.navigator = Navigator(lambda: self.project, self)
-        self._build()
         self._connect()
         self.dispatch = Dispatch(self)
         self.drops = Drops(self)
@@ -69,7 +63,14 @@ class Shell(QMainWindow):
         self._picture: tuple[int, QImage] | None = None
         self.open_session(session)
 
-    def _build(self) -> None:
+    def _build(self, viewport: Choice) -> None:
+        self.bar, self.status, self.timeline = TopBar(), StatusLine(), TimelinePanel()
+        self.video, self.character, self.welcome = VideoWorkspace(), CharacterWorkspace(viewport), Welcome()
+        self.performance = PerformanceWorkspace(viewport)
+        pages = {"video": self.video, "character": self.character, "performance": self.performance}
+        self.pages = Pages(pages, self.welcome)
+        self.side = SidePanel()
+        self.care = Care(self)
         self.split = Split(self.pages, self.timeline)
         self.split.chosen.connect(self._fit_lanes)
         body = QWidget()
