@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import attrs
 
 from app.model.document import Document
 from app.model.edits import Edit
 from app.model.values import MediaRef
+from app.stages.foreign import is_project
 from app.storage.folder import ProjectFolder, size_of
 from imitation.errors import InputError
 from imitation.progress import Progress, part
@@ -17,11 +19,11 @@ Copies = Mapping[MediaRef, MediaRef]
 
 
 def linked_media(document: Document) -> tuple[MediaRef, ...]:
-    """Give the media that lie outside the project, each once."""
+    """Give the media that lie outside the project, each once; motions of other projects are none: they stay there."""
     found: list[MediaRef] = []
 
     def note(media: MediaRef) -> MediaRef:
-        if media.linked:
+        if media.linked and not is_project(Path(media.path)):
             found.append(media)
         return media
 

@@ -9,6 +9,7 @@ from typing import Literal
 
 import attrs
 
+from app.actions.performing import find_again
 from app.actions.session import Session
 from app.formats import open_images, open_video, read_mesh
 from app.formats.tvm import open_mesh_frames
@@ -16,6 +17,7 @@ from app.model.character import Character
 from app.model.document import Document
 from app.model.edits import Edit, characters, scene, sequences
 from app.model.values import Clip, MediaRef
+from app.stages.foreign import is_project, open_motion
 from app.storage.folder import ProjectFolder, fingerprint
 from imitation.errors import InputError
 
@@ -58,6 +60,9 @@ def look_for(lost: LostMedium, folder: Path) -> Path | None:
     """Give the same file or folder, told by its content, in a folder or somewhat below it."""
     for candidate in _named(folder, lost.name):
         try:
+            if is_project(candidate):
+                open_motion(candidate, lost.media.fingerprint).close()
+                return candidate
             if fingerprint(candidate) == lost.media.fingerprint:
                 return candidate
         except InputError:
@@ -79,8 +84,9 @@ def relink(session: Session, lost: LostMedium, path: Path) -> None:
         _check_mesh(document.character(lost.id), path)
         edit = characters.relink_character(document, lost.id, session.folder.link(path))
     elif lost.kind == "sequence":
-        _check_sequence(document.sequence(lost.id).source_count, path)
-        edit = sequences.relink_sequence(document, lost.id, session.folder.link(path))
+        if not is_project(path):
+            _check_sequence(document.sequence(lost.id).source_count, path)
+        edit = sequences.relink_sequence(document, lost.id, find_again(session, lost.id, path))
     else:
         found = scene.set_camera(document, "file", file=session.folder.link(path))
         edit = Edit(found.document, "Find the cameras again")

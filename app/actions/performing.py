@@ -10,11 +10,12 @@ from typing import Any
 import attrs
 
 from app.actions.session import Session
-from app.formats.tvm import guess_facts, open_mesh_frames
+from app.formats.tvm import MeshFrames, guess_facts, open_mesh_frames
 from app.model.document import Document
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence, Fact, Motion, SequenceUp
 from app.model.values import MediaRef
+from app.stages.foreign import ProjectMotion, finished, foreign_motions, is_project, open_motion
 from app.stages.results import Animation
 from imitation.errors import InputError, NoSolution
 from imitation.progress import Progress, silent
@@ -74,22 +75,79 @@ def read_sequence(
     up: SequenceUp | None = None,
     unit: float | None = None,
     copy: bool = False,
+    character: str | None = None,
     progress: Progress | None = None,
 ) -> FoundSequence:
     """Look what a sequence of meshes is and bring it in, without changing the document: safe in any thread.
+
+    Of another project it is the finished motion of a ``character``, which is linked and never solved here.
 
     Raises ``InputError`` when it cannot be read.
     """
     report = progress or silent
     report(0.0)
-    with open_mesh_frames(path) as frames:
+    with _opened(session, path, character) as frames:
         report(0.2)
         guess = guess_facts(frames, fps=fps, up=up, unit=unit)
         count = len(frames)
     report(0.5)
-    media = session.bring_in(path, copy=copy)
-    chosen = name or (path.name if path.is_dir() else path.stem)
+    if isinstance(frames, ProjectMotion):
+        if copy:
+            raise InputError(f"{path.name} is a project, whose motion is linked: add it without copying.")
+        media, own = _linked(path, frames), frames.character
+    else:
+        media, own = session.bring_in(path, copy=copy), path.name if path.is_dir() else path.stem
+    chosen = name or own
     return FoundSequence(chosen, media, count, guess.fps, guess.up, guess.unit, guess.guessed, guess.why)
+
+
+def read_sequences(session: Session, path: Path, *, progress: Progress | None = None) -> tuple[FoundSequence, ...]:
+    """Look at all that a path gives: one sequence, or every finished motion of another project."""
+    names = characters_of(path) or (None,)
+    return tuple(read_sequence(session, path, character=name, progress=progress) for name in names)
+
+
+def characters_of(path: Path) -> tuple[str, ...]:
+    """Give the ids of another project's characters with a finished motion; none for a path that is no project.
+
+    Raises ``InputError`` when a project has no finished motion.
+    """
+    return tuple(each.character.id for each in finished(path)) if is_project(path) else ()
+
+
+def _opened(session: Session, path: Path, character: str | None) -> MeshFrames:
+    if not is_project(path):
+        return open_mesh_frames(path)
+    if path.resolve() == session.folder.path.resolve():
+        raise InputError(f"{path.name} is this project itself: add the motion of its character instead.")
+    if character is None:
+        (only, *others) = characters_of(path)
+        if others:
+            raise InputError(f"Several characters of {path.name} have a motion: name one of them.")
+        character = only
+    return open_motion(path, character=character)
+
+
+def _motion_again(sequence: CapturedSequence, mark: str, path: Path) -> MediaRef:
+    """The motion a sequence was made of, or what has become of it where that was animated again."""
+    motions = foreign_motions(path)
+    same = [each for each in motions if each.mark == mark]
+    done = [each for each in motions if each.done]
+    named = [each for each in done if each.character.name == sequence.name] or done
+    found = same or named
+    if len(found) != 1:
+        raise InputError(f"It is not clear which motion of {path.name} was {sequence.name}: add the right one anew.")
+    with open_motion(path, character=found[0].character.id) as motion:
+        if len(motion) != sequence.source_count:
+            raise InputError(
+                f"{motion.name} has {len(motion)} frames, but {sequence.name} was made of {sequence.source_count}: "
+                "add it anew."
+            )
+        return _linked(path, motion)
+
+
+def _linked(path: Path, motion: ProjectMotion) -> MediaRef:
+    return MediaRef(str(path.resolve()), motion.mark, linked=True)
 
 
 def take_sequence(session: Session, found: FoundSequence) -> tuple[str, str]:
@@ -119,6 +177,7 @@ def add_sequence(
     up: SequenceUp | None = None,
     unit: float | None = None,
     copy: bool = False,
+    character: str | None = None,
 ) -> tuple[str, str]:
     """Add a sequence of meshes; gives its id, and a sentence on what was guessed or converted (empty if nothing).
 
@@ -126,7 +185,8 @@ def add_sequence(
 
     Raises ``InputError`` when it cannot be read.
     """
-    return take_sequence(session, read_sequence(session, path, name=name, fps=fps, up=up, unit=unit, copy=copy))
+    found = read_sequence(session, path, name=name, fps=fps, up=up, unit=unit, copy=copy, character=character)
+    return take_sequence(session, found)
 
 
 def find_again(session: Session, sequence_id: str, path: Path, *, progress: Progress | None = None) -> MediaRef:
@@ -136,6 +196,8 @@ def find_again(session: Session, sequence_id: str, path: Path, *, progress: Prog
     """
     sequence = session.document.sequence(sequence_id)
     (progress or silent)(0.0)
+    if is_project(path) and sequence.media is not None:
+        return _motion_again(sequence, sequence.media.fingerprint, path)
     with open_mesh_frames(path) as frames:
         if len(frames) != sequence.source_count:
             raise InputError(

@@ -23,7 +23,7 @@ SEQUENCE = click.option("--sequence", "name", help="Which sequence, where there 
 @click.command()
 @PROJECT
 @click.argument("files", nargs=-1, type=PATH)
-@click.option("--character", "characters", multiple=True, help="Add this character's animated motion.")
+@click.option("--character", "characters", multiple=True, help="Add this character's motion (of a project in FILES).")
 @click.option("--name", help="Name of the sequence; by default that of the file.")
 @click.option("--fps", type=float, help="Frame rate of the files.")
 @click.option("--up", type=click.Choice(["y", "z"]), help="Up axis of the files.")
@@ -34,15 +34,19 @@ SEQUENCE = click.option("--sequence", "name", help="Which sequence, where there 
 @click.option("--copy", is_flag=True, help="Copy the files into the project instead of linking them.")
 @click.pass_obj
 def add(console: Console, project: Path, files: tuple[Path, ...], characters: tuple[str, ...], **said: Any) -> None:
-    """Add sequences to a project: folders of PLY, OBJ, OFF or GLB, npz, animated GLB. Makes the project if need be."""
+    """Add sequences to a project: folders of PLY, OBJ, OFF or GLB, npz, animated GLB, finished motions of projects.
+
+    Makes the project if need be.
+    """
     if not files and not characters:
         raise InputError("There is nothing to add: name folders or files, or a character.")
-    if said["name"] and len(files) + len(characters) > 1:
+    wanted, characters = _wanted(files, characters)
+    if said["name"] and len(wanted) + len(characters) > 1:
         raise InputError("One name cannot serve several sequences: add them one by one.")
     with closing(_open_or_new(project)) as session:
         added = []
-        for file in files:
-            facts = {key: said[key] for key in ("fps", "up", "unit")}
+        for file, whose in wanted:
+            facts = {key: said[key] for key in ("fps", "up", "unit")} | {"character": whose}
             made, note = performing.add_sequence(session, file, name=said["name"], copy=said["copy"], **facts)
             added.append((made, note))
         for character in characters:
@@ -74,6 +78,20 @@ def add(console: Console, project: Path, files: tuple[Path, ...], characters: tu
             if note:
                 console.warn(note)
         console.answer({"project": str(session.folder.path), "added": values}, lines)
+
+
+def _wanted(
+    files: tuple[Path, ...], characters: tuple[str, ...]
+) -> tuple[list[tuple[Path, str | None]], tuple[str, ...]]:
+    """What is added of files, with whose motion where they are projects, and the characters of the project itself."""
+    projects = [file for file in files if performing.is_project(file)]
+    if projects and characters and len(files) > 1:
+        raise InputError("It is not clear whose character is meant: add the motions of one project at a time.")
+    wanted: list[tuple[Path, str | None]] = []
+    for file in files:
+        whose = (characters or performing.characters_of(file)) if file in projects else (None,)
+        wanted += [(file, each) for each in whose]
+    return wanted, () if projects else characters
 
 
 @click.command()

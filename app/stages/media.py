@@ -66,8 +66,14 @@ class Media:
         with self._lock:
             frames = self._sequences.get(media.fingerprint)
             if frames is None:
-                frames = self._sequences[media.fingerprint] = open_mesh_frames(self.locate(media))
+                frames = self._sequences[media.fingerprint] = self._open_sequence(media)
             return frames
+
+    def _open_sequence(self, media: MediaRef) -> MeshFrames:
+        from app.stages.foreign import is_project, open_motion
+
+        path = self.locate(media)
+        return open_motion(path, media.fingerprint) if is_project(path) else open_mesh_frames(path)
 
     def flow_room(self, clip: Clip) -> Any:
         """Give the flow field of this clip that a cancelled computation left, or an empty one."""

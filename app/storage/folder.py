@@ -142,7 +142,9 @@ class ProjectFolder:
         if media.linked:
             candidates += [self.path.parent / stated.name, self.media / stated.name]
         for candidate in candidates:
-            if candidate.exists() and (candidate == candidates[0] or fingerprint(candidate) == media.fingerprint):
+            # Of another project only a motion is used: its own mark is looked at where that is opened.
+            known = candidate == candidates[0] or candidate.suffix == SUFFIX
+            if candidate.exists() and (known or fingerprint(candidate) == media.fingerprint):
                 return candidate
         raise InputError(f"{stated.name} is missing: it was expected at {candidates[0]}; say where it lies now.")
 

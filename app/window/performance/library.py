@@ -171,6 +171,7 @@ class Library(Panel):
         menu.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         menu.addAction("Folder of meshes, one a frame…", self.ask_folder)
         menu.addAction("File: npz, animated GLB or USD…", self.ask_file)
+        menu.addAction("Motion of another project…", self.ask_project)
         if self.state.document.sequences:
             menu.addAction("Key motions of an exported path…", self.ask_path)
         project = self.state.project
@@ -186,6 +187,12 @@ class Library(Panel):
     def ask_folder(self) -> None:
         """Ask for a folder and add it."""
         chosen = QFileDialog.getExistingDirectory(self, "Add a sequence: a folder of meshes", str(Path.home()))
+        if chosen:
+            self.add(Path(chosen))
+
+    def ask_project(self) -> None:
+        """Ask for another project and add the finished motions of its characters."""
+        chosen = QFileDialog.getExistingDirectory(self, "Add motions of another project", str(Path.home()))
         if chosen:
             self.add(Path(chosen))
 
@@ -211,12 +218,14 @@ class Library(Panel):
 
     def add(self, path: Path) -> None:
         """Read a sequence in the background, then add it."""
-        from app.actions.performing import read_sequence
+        from app.actions.performing import read_sequences
 
         project = self.state.project
         if project is not None:
             session = project.session
-            job = project.call(f"Reading {path.name}", lambda progress: read_sequence(session, path, progress=progress))
+            job = project.call(
+                f"Reading {path.name}", lambda progress: read_sequences(session, path, progress=progress)
+            )
             self._reading[job] = (path.name, "")
             self.refresh()
 
@@ -256,7 +265,8 @@ class Library(Panel):
             else:
                 from app.actions.performing import take_sequence
 
-                self._take(lambda session: take_sequence(session, job.value))
+                for found in job.value:
+                    self._take(lambda session, found=found: take_sequence(session, found))
         self.refresh()
 
     # the chosen one ----------------------------------------------------------------------------------------------
@@ -347,8 +357,9 @@ class Library(Panel):
     # dropping ----------------------------------------------------------------------------------------------------
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        """Take folders and files of meshes, and paths that were exported."""
-        if any(_is_known(Path(url.toLocalFile())) for url in event.mimeData().urls() if url.isLocalFile()):
+        """Take folders and files of meshes, other projects for their motions, and paths that were exported."""
+        paths = [Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()]
+        if any(_is_path(path) or self._is_sequence(path) for path in paths):
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:
@@ -357,13 +368,14 @@ class Library(Panel):
             path = Path(url.toLocalFile())
             if _is_path(path):
                 self.take_path(path)
-            elif _is_sequence(path):
+            elif self._is_sequence(path):
                 self.add(path)
         event.acceptProposedAction()
 
-
-def _is_known(path: Path) -> bool:
-    return _is_sequence(path) or _is_path(path)
+    def _is_sequence(self, path: Path) -> bool:
+        """Whether it may be one; the project that is open is none of its own sequences."""
+        project = self.state.project
+        return _is_sequence(path) and (project is None or path != project.session.folder.path)
 
 
 def _is_path(path: Path) -> bool:
@@ -372,4 +384,4 @@ def _is_path(path: Path) -> bool:
 
 def _is_sequence(path: Path) -> bool:
     """Whether it may be one; a folder that is nothing known is taken, to say what is wrong with it."""
-    return kind_of(path) in ("sequence", "") if path.is_dir() else path.suffix.lower() in FILES
+    return kind_of(path) in ("sequence", "project", "") if path.is_dir() else path.suffix.lower() in FILES
