@@ -17,6 +17,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from app.actions.session import Session
 from app.window.application import make_application
+from app.window.settings import settings
 from app.window.shell import Shell
 from tests.window.small_project import build_small_project
 
@@ -34,6 +35,12 @@ def private_places(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setenv(name, str(tmp_path_factory.mktemp(name)))
     yield
     patch.undo()
+
+
+@pytest.fixture(autouse=True)
+def nothing_remembered(private_places: None) -> None:
+    """What one test chose (a form of export, a look, a key) is not what the next begins with."""
+    settings().clear()
 
 
 @pytest.fixture(scope="session")

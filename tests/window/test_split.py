@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
-import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
@@ -15,14 +12,6 @@ from app.window.timeline import Bar, Curve, Diamond, Lane, Row
 from app.window.timeline.lanes import layout, total_height
 from app.window.timeline.summary import LINE, summaries
 from tests.window.conftest import drag, settle
-
-
-@pytest.fixture(autouse=True)
-def nothing_remembered() -> Iterator[None]:
-    """No height chosen in another test."""
-    settings().remove("split")
-    yield
-    settings().remove("split")
 
 
 def test_the_height_chosen_by_hand_is_kept_for_its_workspace(shell: Shell) -> None:
