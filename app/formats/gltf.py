@@ -97,7 +97,7 @@ def read_gltf(path: Path, data: bytes) -> Gltf:
     try:
         tree, binary = _split(data)
         buffers = [_buffer(path.parent, entry, binary) for entry in tree.get("buffers", [])]
-    except (ValueError, KeyError, TypeError, struct.error, OSError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, struct.error, OSError) as error:
         raise InputError(f"The file {name} is not a whole GLB or glTF file: export it again.") from error
     for extension in tree.get("extensionsRequired", []):
         if extension in _UNREADABLE:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import random
+import struct
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
@@ -312,3 +315,44 @@ def test_a_picture_on_a_skin_comes_along(tmp_path: Path) -> None:
         assert texture.images[0].read_bytes() == picture
         np.testing.assert_array_equal(texture.corners, arm.faces)
         np.testing.assert_allclose(texture.coordinates, places * [1, -1] + [0, 1], atol=1e-6)
+
+
+def _places(tree: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    items = tree.items() if isinstance(tree, dict) else enumerate(tree) if isinstance(tree, list) else ()
+    return [found for key, value in items for found in ((*path, key), *_places(value, (*path, key)))]
+
+
+def test_whatever_a_file_says_is_read_or_refused(tmp_path: Path) -> None:
+    """Any entry of the description replaced or missing, any length cut off: frames, or one sentence; never a crash."""
+    path = Arm().write(tmp_path / "arm.glb")
+    data = path.read_bytes()
+    size = struct.unpack_from("<I", data, 12)[0]
+    tree, binary = json.loads(data[20 : 20 + size]), data[20 + size :]
+    rng = random.Random(5)
+    places = _places(tree)
+    refused = 0
+    for _ in range(400):
+        spoiled = json.loads(json.dumps(tree))
+        *above, last = rng.choice(places)
+        entry = spoiled
+        for key in above:
+            entry = entry[key]
+        entry[last] = rng.choice([None, -1, 0, 99, 1e9, "x", [], {}, 2**40, float("nan"), [1], 1.5])
+        text = json.dumps(spoiled).encode()
+        text += b" " * (-len(text) % 4)
+        head = struct.pack("<4sII", b"glTF", 2, 20 + len(text) + len(binary))
+        path.write_bytes(head + struct.pack("<I4s", len(text), b"JSON") + text + binary)
+        refused += _refused(path)
+    assert refused > 200
+    for _ in range(40):
+        path.write_bytes(data[: rng.randrange(len(data))])
+        assert _refused(path)
+
+
+def _refused(path: Path) -> bool:
+    try:
+        with open_mesh_frames(path) as frames:
+            assert all(len(frames[k].vertices) for k in (0, -1))
+    except InputError:
+        return True
+    return False
