@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
@@ -9,6 +11,7 @@ from PySide6.QtTest import QTest
 
 from app.window.shell import Shell
 from app.window.timeline import TimelineHit
+from app.window.work import Ears
 from tests.window.conftest import _move, at, drag, settle, wait_for
 from tests.window.test_character_workspace import (
     CONTROL,
@@ -176,8 +179,16 @@ def test_a_stroke_over_the_film_is_a_quarter_of_its_pixel(posed: Shell) -> None:
     posed.project.cancel_work()
 
 
-def test_escape_during_propagation_keeps_what_is_finished(posed: Shell) -> None:
+def test_escape_during_propagation_keeps_what_is_finished(posed: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
     """The finished frames stay as they are, the rest is waiting; Ctrl+Return goes on to the end."""
+    tell = Ears.partial
+
+    def slowly(ears: Ears, *values: object) -> None:
+        """A small mesh is done before a hand can stop it: every frame takes as long as one of a large mesh."""
+        tell(ears, *values)
+        time.sleep(0.05)
+
+    monkeypatch.setattr(Ears, "partial", slowly)
     nose = vertex(posed, "nose")
     old = [pose(posed, frame) for frame in range(24)]
     seen: list[int] = []
