@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QComboBox, QToolButton, QWidget
+from PySide6.QtWidgets import QApplication, QComboBox, QToolButton, QWidget
 
 from app.actions.session import Session
 from app.formats import open_video
@@ -60,8 +60,9 @@ def made(dialog: RenderDialog, so: Callable[..., bool] = lambda *_: True) -> Non
 
 
 def choose(box: QComboBox, text: str) -> None:
-    """Choose a line of a list by the keys."""
+    """Choose a line of a list by the keys, once the box no longer takes them for the end of those before."""
     box.setFocus()
+    settle(QApplication.keyboardInputInterval() + 50)
     QTest.keyClicks(box, text[:6])
     assert box.currentText().startswith(text[:6])
 
