@@ -17,6 +17,7 @@ from app.window.character.empty import Empty
 from app.window.character.mesh_header import MeshHeader
 from app.window.character.over_panes import OverPanes
 from app.window.character.panes import SPLIT, Pane, Panes
+from app.window.character.surroundings import Surroundings
 from app.window.controls import ErrorBar, Panel
 from app.window.picture_notes import PictureNotes
 from app.window.viewport import Gizmo, Handle, Viewport
@@ -48,8 +49,7 @@ class MeshView(Panel):
         self.calm: Callable[[], bool] = lambda: True
         self._mesh: tuple[int, int] = (0, 0)
         self._frame = 0
-        self._ground: tuple[float, ...] = ()
-        self._scene: tuple[Array, Array, float] | None = None
+        self._scene: Surroundings | None = None
         self._background: tuple[Array, NDArray[np.int32], NDArray[np.uint8]] | None = None
         self._faced = False
         self.bar = MeshHeader()
@@ -265,24 +265,19 @@ class MeshView(Panel):
         extent = main.view.scene.extent
         middle = extent.mean(0)
         radius = 2.2 * float(np.linalg.norm(extent[1] - extent[0]))
-        signature = (float(len(points)), float(len(centres)), ground, *np.round(middle, 1).tolist(), round(radius, 1))
-        if signature == self._ground:
+        if self._scene is not None and self._scene.serves(points, centres, ground, middle, radius):
             return
-        self._ground = signature
         near = np.linalg.norm(points - middle, axis=1) < 4 * radius if len(points) else np.zeros(0, bool)
-        self._scene = (points[near], centres, ground)
+        self._scene = Surroundings(points, centres, ground, middle, radius, points[near])
         for pane in self.panes.panes.values():
             self._lay(pane)
 
     def _lay(self, pane: Pane) -> None:
-        assert self._scene is not None
-        assert self.panes.main is not None
-        points, centres, ground = self._scene
-        extent = self.panes.main.view.scene.extent
-        radius = 2.2 * float(np.linalg.norm(extent[1] - extent[0]))
-        pane.view.scene.set_points(points)
-        pane.view.scene.set_camera_path(centres)
-        pane.view.scene.set_ground(extent.mean(0)[:2], radius, ground)
+        laid = self._scene
+        assert laid is not None
+        pane.view.scene.set_points(laid.near)
+        pane.view.scene.set_camera_path(laid.centres)
+        pane.view.scene.set_ground(laid.middle[:2], laid.radius, laid.ground)
         pane.view.redraw()
 
     def show_background(self, mesh: tuple[Array, NDArray[np.int32], NDArray[np.uint8]] | None) -> None:
