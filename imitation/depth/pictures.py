@@ -21,7 +21,7 @@ KEPT = 24  # frames whose signals stay in memory
 
 
 class Pictures:
-    """Signals of frames at a workable size, made on demand, few kept.
+    """Signals of frames at a workable size, made on demand, few kept; threads may share it.
 
     Parameters
     ----------
@@ -106,10 +106,13 @@ class Pictures:
         return self._kept(frame, self._make_signal)
 
     def _kept(self, frame: int, make: Callable[[int], NDArray[np.float32]]) -> NDArray[np.float32]:
-        if frame in self._signals:
+        try:
+            # Each step is one of the interpreter's, so that threads may share the pictures: at worst two make the same.
             self._signals.move_to_end(frame)
             return self._signals[frame]
-        self._signals[frame] = value = make(frame)
+        except KeyError:
+            value = make(frame)
+        self._signals[frame] = value
         while len(self._signals) > KEPT:
             self._signals.popitem(last=False)
         return value

@@ -53,7 +53,8 @@ class Sketch:
 class DepthSolver:
     """Depth of the frames of one clip, a frame at a time: ``first`` for all, then ``second``, then ``finish``.
 
-    Each call depends on its arguments only, so that frames can be spread over machines.
+    Each call depends on its arguments only, so that frames can be spread over machines; threads may share a solver,
+    whose frames are then read once.
 
     Parameters
     ----------

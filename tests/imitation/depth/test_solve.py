@@ -110,6 +110,19 @@ def test_the_same_bits_with_any_number_of_threads(solved: Solved) -> None:
             np.testing.assert_array_equal(depth, alone)
 
 
+def test_threads_share_a_solver(solved: Solved, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Frames of one solver on four threads, while hardly any signal stays in memory: the bits of one thread."""
+    world = solved.world
+    monkeypatch.setattr("imitation.depth.pictures.KEPT", 2)
+    solver = DepthSolver(world.frames, world.cameras, world.masks, longest=96)
+    alone = {frame: solver.first(frame, KEYS).inverse for frame in KEYS}
+    shared = DepthSolver(world.frames, world.cameras, world.masks, longest=96, reach=solver.reach)
+    with ThreadPoolExecutor(4) as pool:
+        for _ in range(3):
+            for frame, sketch in zip(KEYS, pool.map(lambda t: shared.first(t, KEYS), KEYS), strict=True):
+                np.testing.assert_array_equal(sketch.inverse, alone[frame])
+
+
 def test_key_frames_are_sparse_and_cover_the_clip(solved: Solved) -> None:
     """First and last frame, not all; views are other frames, on both sides, at several baselines."""
     solver = DepthSolver(solved.world.frames, solved.world.cameras, solved.world.masks)
