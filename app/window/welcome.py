@@ -10,10 +10,15 @@ from PySide6.QtGui import QIcon, QPainter, QPixmap, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app.window import icons, settings, theme
-from app.window.controls import ErrorBar, Panel, Pictogram, button, label
+from app.window.controls import ErrorBar, Invitation, Panel, label
+from app.window.controls.own_keys import PressKeys
 
 CARD = QSize(176, 99)
 SHOWN = 4
+HOW = (
+    "Motionwright follows points that you click on a filmed animal or person, and moves a character like it.",
+    "Captured sequences of meshes are cut into motions and composed anew: drop a folder of them.",
+)
 
 
 class Welcome(Panel):
@@ -27,34 +32,12 @@ class Welcome(Panel):
         super().__init__()
         self.errors = ErrorBar()
         self.column.addWidget(self.errors)
-        body = QWidget()
-        column = QVBoxLayout(body)
-        column.setSpacing(12)
-        column.addStretch(2)
-        column.addWidget(Pictogram("video", size=56))
-        sentence = label("Open a video, or drop one here.", "brand")
-        how = label(
-            "Motionwright follows points that you click on a filmed animal or person, and moves a character like it.\n"
-            "Captured sequences of meshes are cut into motions and composed anew: drop a folder of them.",
-            "label",
-        )
-        for widget in (sentence, how):
-            widget.setAlignment(Qt.AlignmentFlag.AlignCenter)
-            column.addWidget(widget)
-        row = QHBoxLayout()
-        row.setSpacing(8)
-        row.addStretch(1)
-        self.open = button("Open a video", lambda: self.wanted.emit("add_clip"), primary=True, name="open")
-        self.sample = button("Open the sample", lambda: self.wanted.emit("sample"), name="sample")
-        self.project = button("Open a project", lambda: self.wanted.emit("open"), name="open")
-        for each in (self.open, self.sample, self.project):
-            row.addWidget(each)
-        row.addStretch(1)
-        column.addSpacing(8)
-        column.addLayout(row)
-        column.addStretch(1)
-        column.addWidget(self._lately())
-        column.addStretch(2)
+        body = Invitation("video", "Open a video, or drop one here.", *HOW)
+        self.open = body.offer("Open a video", "add_clip", primary=True, icon="open")
+        self.sample = body.offer("Open the sample", "sample", icon="sample")
+        self.project = body.offer("Open a project", "open", icon="open")
+        body.wanted.connect(self.wanted)
+        body.below.addWidget(self._lately())
         self.column.addWidget(body, 1)
 
     def _lately(self) -> QWidget:
@@ -101,6 +84,7 @@ class Welcome(Panel):
         card.setToolTip(str(path))
         card.setAccessibleName(f"Open the project {path.stem}")
         card.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        PressKeys(card)
         card.clicked.connect(lambda: self.project_wanted.emit(path))
         return card
 

@@ -71,9 +71,9 @@ def choose(box: QComboBox, text: str) -> None:
 
 def unfold(shell: Shell, number: int) -> None:
     """Open a section below the cards."""
-    head = library(shell).sections[number].head
-    if not head.isChecked():
-        QTest.mouseClick(head, LEFT)
+    section = library(shell).sections[number]
+    if not section.opened:
+        QTest.mouseClick(section.head, LEFT)
     settle(20)
 
 

@@ -9,8 +9,7 @@ from PySide6.QtGui import QFont, QFontMetricsF, QMouseEvent, QPainter, QPaintEve
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.window import fonts, theme
-from app.window.character.fold import Fold
-from app.window.controls import Row, label
+from app.window.controls import Fold, Row, label
 
 SHOWN, ROW = 5, 22
 

@@ -7,10 +7,9 @@ from PySide6.QtWidgets import QCheckBox, QHBoxLayout
 
 from app.model.character import Character
 from app.model.edits import poses
-from app.window.character.fold import Fold
 from app.window.character.handles_of import vertex_title
 from app.window.character.row_list import Act, Entry, RowList
-from app.window.controls import button, icon_button, label
+from app.window.controls import Fold, button, icon_button, label
 from app.window.project import Project
 
 DELETE_FRAME = Act("delete", "delete", "Delete this pose edit")

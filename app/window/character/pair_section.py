@@ -6,9 +6,8 @@ from PySide6.QtCore import Signal
 
 from app.model.character import Character
 from app.model.edits import characters
-from app.window.character.fold import Fold
 from app.window.character.row_list import Act, Entry, RowList
-from app.window.controls import set_tooltip, toggle
+from app.window.controls import Fold, set_tooltip, toggle
 from app.window.picture_layers import colour_of
 from app.window.project import Project
 

@@ -7,8 +7,7 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout
 
 from app.model.character import Alignment, Character
 from app.model.edits import characters
-from app.window.character.fold import Fold
-from app.window.controls import NumberField, NumberRange, Row, button, toggle
+from app.window.controls import Fold, NumberField, NumberRange, Row, button, toggle
 from app.window.project import Project
 
 SCALE = NumberRange(0.01, 100.0, 0.005, 3, "×", 1.0)

@@ -3,6 +3,8 @@
 from app.window.controls.buttons import button, icon_button, renew_tooltips, set_tooltip, toggle, tool
 from app.window.controls.chooser import Chooser
 from app.window.controls.error_bar import ErrorBar
+from app.window.controls.fold import Fold
+from app.window.controls.invitation import Invitation
 from app.window.controls.labels import Chip, Elided, Header, Pictogram, Row, label, separator
 from app.window.controls.number import NumberField, NumberRange
 from app.window.controls.panel import Panel, ScrollColumn
@@ -13,7 +15,9 @@ __all__ = [
     "Chooser",
     "Elided",
     "ErrorBar",
+    "Fold",
     "Header",
+    "Invitation",
     "Meter",
     "NumberField",
     "NumberRange",

@@ -8,6 +8,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QAbstractButton, QPushButton, QToolButton, QWidget
 
 from app.window import icons
+from app.window.controls.own_keys import PressKeys
 from app.window.keys import present_key
 
 
@@ -35,6 +36,7 @@ def icon_button(name: str, text: str, call: Callable[[], object] | None = None, 
     set_tooltip(button, text, key)
     button.setAccessibleName(text)
     button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    PressKeys(button)
     if call is not None:
         button.clicked.connect(lambda: call())
     return button
@@ -52,6 +54,7 @@ def toggle(name: str, text: str, call: Callable[[bool], object], *, on: bool = F
     button.setChecked(on)
     set_tooltip(button, text, key)
     button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    PressKeys(button)
     button.toggled.connect(call)
     return button
 
@@ -68,6 +71,7 @@ def tool(name: str, text: str, key: str = "") -> QToolButton:
     button.setFixedSize(56, 52)
     set_tooltip(button, text, key)
     button.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    PressKeys(button)
     return button
 
 
@@ -80,5 +84,6 @@ def button(text: str, call: Callable[[], object], *, primary: bool = False, name
         made.setIcon(icons.icon(name, "on_accent" if primary else "text", "text"))
         made.setIconSize(QSize(16, 16))
     made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    PressKeys(made)
     made.clicked.connect(lambda: call())
     return made

@@ -8,9 +8,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QSlider, QVBoxLayout, QWidget
 
 from app.model.edits import performance as edits
-from app.window.controls import Chooser, NumberField, NumberRange, Row, label
+from app.window.controls import Chooser, Fold, NumberField, NumberRange, Row, label
 from app.window.controls.own_keys import OwnKeys
-from app.window.performance.section import Section
 from app.window.performance.state import PerformanceState
 from app.window.performance.trial import Trial
 
@@ -43,13 +42,10 @@ class DatabasePanel(QWidget):
         self.features_method = self._chooser("features")
         self.graph_method.setToolTip("How transitions are found and pruned: robust, or equations 9 to 14 as printed")
         self.features_method.setToolTip("How frames are compared: robust, or equations 1 to 5 as printed")
-        methods = QWidget()
-        rows = QVBoxLayout(methods)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(6)
-        rows.addWidget(Row("Transitions", self.graph_method))
-        rows.addWidget(Row("Distances", self.features_method))
-        column.addWidget(Section("Methods", methods))
+        methods = Fold("Methods", opened=False)
+        methods.column.addWidget(Row("Transitions", self.graph_method))
+        methods.column.addWidget(Row("Distances", self.features_method))
+        column.addWidget(methods)
         state.results_changed.connect(self.refresh)
         state.document_changed.connect(self.refresh)
         trial.changed.connect(self.refresh)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QMenu, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLineEdit, QMenu, QSizePolicy, QStackedWidget
 
-from app.window.controls import ErrorBar, Panel, Pictogram, button, icon_button, label, set_tooltip
+from app.window.controls import ErrorBar, Invitation, Panel, button, icon_button, set_tooltip
 from app.window.keys import shown_key
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.graph_canvas import GraphCanvas
@@ -24,41 +24,19 @@ SAMPLES = 24
 """So many pictures of a motion play under the mouse at most."""
 
 
-class Nothing(QWidget):
+class Nothing(Invitation):
     """Where the graph will be: what is missing, and the one thing to do."""
 
-    wanted = Signal(str)
-
     def __init__(self) -> None:
-        super().__init__()
-        column = QVBoxLayout(self)
-        column.setSpacing(12)
-        column.addStretch(2)
-        column.addWidget(Pictogram("graph", size=48))
-        self.sentence = label(NOTHING, "brand")
-        self.how = label(HOW, "label")
-        for each in (self.sentence, self.how):
-            each.setAlignment(Qt.AlignmentFlag.AlignCenter)
-            column.addWidget(each)
-        for each in (self.sentence, self.how):
-            each.setWordWrap(True)
-        row = QHBoxLayout()
-        row.setSpacing(8)
-        row.addStretch(1)
-        self.add = button("Add a sequence", lambda: self.wanted.emit("add_sequence"), primary=True, name="sequence")
-        self.sample = button("Open the sample", lambda: self.wanted.emit("sample_performance"), name="sample")
-        self.run = button("Run what is missing", lambda: self.wanted.emit("propagate"), primary=True, name="run")
-        for each in (self.add, self.sample, self.run):
-            row.addWidget(each)
-        row.addStretch(1)
-        column.addSpacing(8)
-        column.addLayout(row)
-        column.addStretch(3)
+        super().__init__("graph", NOTHING, HOW)
+        self.add = self.offer("Add a sequence", "add_sequence", primary=True, icon="sequence")
+        self.sample = self.offer("Open the sample", "sample_performance", icon="sample")
+        self.run = self.offer("Run what is missing", "propagate", primary=True, icon="run")
 
     def tell(self, sentence: str, how: str, *, empty: bool, run: bool) -> None:
         """Say what is missing."""
         self.sentence.setText(sentence)
-        self.how.setText(how)
+        self.more[0].setText(how)
         self.add.setVisible(empty)
         self.sample.setVisible(empty)
         self.run.setVisible(run)

@@ -14,9 +14,8 @@ from app.actions.kinds import kind_of
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence
 from app.stages.job import Job
-from app.window.controls import ErrorBar, Panel, ScrollColumn, button, icon_button, label
+from app.window.controls import ErrorBar, Fold, Panel, ScrollColumn, button, icon_button, label
 from app.window.performance.card_words import strip_of, warnings_of
-from app.window.performance.section import Section
 from app.window.performance.sequence_cards import Card, SequenceCards
 from app.window.performance.sequence_facts import SequenceFacts
 from app.window.performance.sequence_structure import SequenceStructure
@@ -51,7 +50,9 @@ class Library(Panel):
         self.empty = self._empty()
         self.cards = SequenceCards()
         self.facts, self.structure = SequenceFacts(state), SequenceStructure(state)
-        self.sections = [Section("Facts of the files", self.facts), Section("How motions are found", self.structure)]
+        self.sections = [Fold("Facts of the files", opened=False), Fold("How motions are found", opened=False)]
+        for section, inner in zip(self.sections, (self.facts, self.structure), strict=True):
+            section.column.addWidget(inner)
         rows = self.body.rows
         rows.addWidget(self.empty)
         rows.addWidget(self.cards)
@@ -341,7 +342,7 @@ class Library(Panel):
     def unfold(self, number: int) -> None:
         """Open a section below the cards and bring it into sight."""
         section = self.sections[number]
-        section.head.setChecked(True)
+        section.open()
         QApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest)
         self.body.ensureWidgetVisible(section, 0, 12)
 

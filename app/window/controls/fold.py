@@ -1,4 +1,4 @@
-"""A section of the inspector under a title that folds it away."""
+"""A section under a title that folds it away."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from app.window import icons
-from app.window.controls import label, separator
+from app.window.controls.labels import label, separator
+from app.window.controls.own_keys import PressKeys
 
 
 class Fold(QWidget):
@@ -26,6 +27,7 @@ class Fold(QWidget):
         self.head.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.head.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.caption = label("", "caption")
+        PressKeys(self.head)
         row.addWidget(self.head)
         row.addStretch(1)
         row.addWidget(self.caption)
