@@ -175,6 +175,7 @@ def _depth(
     for done, frame in enumerate(plan_.keys):
         context.progress(done / len(plan_.keys))
         maps.append(solver.finish(frame, known))
+    context.media.leave_depth_solver()
     context.progress(1.0)
     return maps
 
@@ -184,8 +185,15 @@ def _solver(
 ) -> DepthSolver:
     from imitation.depth import DepthSolver, Range
 
-    reach = None if plan_ is None else Range(plan_.near, plan_.far, plan_.middle)
-    return DepthSolver(context.media.frames(clip), cameras, masks, longest=width, reach=reach)
+    frames = context.media.frames(clip)
+    if plan_ is None:
+        return DepthSolver(frames, cameras, masks, longest=width)
+    reach = Range(plan_.near, plan_.far, plan_.middle)
+    solver: DepthSolver = context.media.depth_solver(
+        (clip.media.fingerprint, id(cameras), id(masks), width, reach),
+        lambda: DepthSolver(frames, cameras, masks, longest=width, reach=reach),
+    )
+    return solver
 
 
 def _plate(

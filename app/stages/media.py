@@ -32,6 +32,7 @@ class Media:
         self._sequences: dict[str, MeshFrames] = {}
         self._rooms: dict[str, Any] = {}
         self._prepared: tuple[tuple[str, int, int], Any] | None = None
+        self._solver: tuple[tuple[Any, ...], Any] | None = None
         self._deformers = Deformers()
         self.memory: dict[Any, Any] = {}
         self._lock = threading.Lock()
@@ -101,6 +102,21 @@ class Media:
                 self._prepared = (key, ready)
             return self._prepared[1]
 
+    def depth_solver(self, key: tuple[Any, ...], make: Callable[[], Any]) -> Any:
+        """Give the depth solver of a clip, made where it is another one: the key frames of one clip share its pictures.
+
+        ``key`` may name by ``id`` only what the solver holds.
+        """
+        with self._lock:
+            if self._solver is None or self._solver[0] != key:
+                self._solver = (key, make())
+            return self._solver[1]
+
+    def leave_depth_solver(self) -> None:
+        """Forget the depth solver: the maps are results now."""
+        with self._lock:
+            self._solver = None
+
     def deformer(self, vertices: Any, faces: Any, keep_volume: bool = False) -> Any:
         """Give a deformer of this rest mesh; all that move the mesh share it."""
         return self._deformers.get(vertices, faces, keep_volume)
@@ -117,5 +133,6 @@ class Media:
             self._sequences.clear()
             self._rooms.clear()
             self._prepared = None
+            self._solver = None
             self._deformers.clear()
             self.memory.clear()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from app.actions.backgrounds import false_colour, summary
 from app.model.document import Document
 from app.stages import depth as depth_stages
 from app.stages.depth import in_world, map_in_world
+from app.stages.media import Media
 from app.stages.project import Stages
 from app.stages.results import Masks, World
 from imitation import CameraPath, Cancelled
@@ -25,7 +27,8 @@ class Here:
     """The context of a stage without a project."""
 
     def __init__(self, frames: Any) -> None:
-        self.media = SimpleNamespace(frames=lambda clip: frames)
+        self.media: Any = Media(Path)  # type: ignore[arg-type]
+        self.media.frames = lambda clip: frames
         self.seen: list[float] = []
 
     def progress(self, fraction: float) -> None:
@@ -41,7 +44,7 @@ def test_without_a_clip_the_stages_say_what_is_missing() -> None:
     assert stages.plate(3).name != stages.plate(4).name
 
 
-CLIP: Any = SimpleNamespace(frame_count=12)
+CLIP: Any = SimpleNamespace(frame_count=12, media=SimpleNamespace(fingerprint="room"))
 
 
 def solved(here: Any, world: Any, masks: Masks) -> Any:
@@ -69,6 +72,21 @@ def test_one_stage_a_key_frame_gives_what_the_engine_gives_at_once() -> None:
         fast = CameraPath(np.tile(np.eye(3), (count, 1, 1)), np.tile(np.eye(3), (count, 1, 1)),
                           np.arange(count)[:, None] * np.ones(3))  # fmt: skip
         assert len(key_frames(fast, 1.0)) <= depth_stages.slots(count)
+
+
+def test_the_key_frames_of_a_clip_share_a_solver() -> None:
+    """It is made once for all passes, let go of when the maps are there, and another for other cameras."""
+    world = filmed_room(4, (160, 90), 12)
+    here: Any = Here(world.frames)
+    masks = Masks.pack(world.masks)
+    plan = depth_stages._plan(here, (CLIP, 160), world.cameras, masks)
+    held = (here, CLIP, 160)
+    one = depth_stages._solver(*held, world.cameras, masks, plan)
+    assert depth_stages._solver(*held, world.cameras, masks, plan) is one
+    moved = world.cameras.transformed(2.0, np.eye(3), np.zeros(3))
+    assert depth_stages._solver(*held, moved, masks, plan) is not one
+    solved(here, world, masks)
+    assert here.media._solver is None
 
 
 def test_a_pass_looks_up_whether_to_stop_many_times() -> None:
