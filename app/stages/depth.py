@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 WIDTH = 480
 """Pixels on the longest side at which a project's depth is solved: contacts and occlusion need no more."""
+BEHIND = 720
+"""Pixels on the longest side at which depth behind the subject is chosen."""
 KEY_SECONDS = 3.0
 MOST = 26
 LABEL = "Measuring the background"
@@ -127,7 +129,7 @@ def background(frames: Any, maps: list[DepthMap], cameras: CameraPath, masks: Ma
     """What is known of the background, ready to give any frame's depth and plate."""
     from imitation.depth import Background
 
-    return Background(frames, cameras, maps, masks=masks)
+    return Background(frames, cameras, maps, masks=masks, longest=BEHIND)
 
 
 def _plan(context: Context, inputs: tuple[Clip, int], cameras: CameraPath, masks: Masks | None) -> Plan:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from imitation.cameras.path import CameraPath
 from imitation.depth.colours import choose_depth, gains, gather
-from imitation.depth.depthmap import DepthMap
+from imitation.depth.depthmap import DepthMap, resized, scaled_camera
 from imitation.depth.pictures import Pictures
 from imitation.depth.projection import consensus, inverse_of, projected_inverse
 from imitation.errors import InputError
@@ -20,6 +20,7 @@ from imitation.geometry.projection import Array, Camera
 SOURCES = 10  # key frames whose depth is brought to a frame
 DONORS = 28  # frames whose colours are looked at, near ones first
 NEAREST = 8  # of them that see a place give its colour
+GROUND = 480  # pixels on the longest side at which depth under a shadow is brought over: shadows are soft
 KEPT = 4  # depths of other frames that stay in memory
 SEAM = 1.5  # pixels over which the fill blends into the frame, at a width of 960
 
@@ -53,6 +54,8 @@ class Background:
     cameras : one a frame.
     maps : depth of the key frames, at the frames' size.
     masks : sequence of bool (h, w), True on the subject and its shadow, or None.
+    longest : pixels on the longest side at which depth behind the subject is chosen: half as many again as those at
+        which it was measured serve nearly as well as all. None: as large as the frames. Colours are never reduced.
     """
 
     def __init__(
@@ -62,6 +65,7 @@ class Background:
         maps: Sequence[DepthMap],
         *,
         masks: Sequence[Any] | None = None,
+        longest: int | None = None,
     ) -> None:
         if not maps:
             raise InputError("A background needs the depth of at least one frame.")
@@ -73,8 +77,9 @@ class Background:
             raise InputError(
                 f"The depth maps are {self.maps[0].depth.shape[::-1]} pixels, but the frames are {self.pictures.size}."
             )
+        self._chosen_at, self._ground_at = self._reduced(longest), self._reduced(GROUND)
         self._last: tuple[DepthMap, ...] = ()  # depths asked for last, of no key frame: their plates ask again
-        self._inverse: dict[tuple[int, int], NDArray[np.float32]] = {}
+        self._inverse: dict[tuple[int, int, tuple[int, int]], NDArray[np.float32]] = {}
         middle = float(np.nanmedian(self.maps[len(self.maps) // 2].depth))
         self.tolerance = 1.5 * self.maps[0].tolerance / middle**2
         """Difference of inverse depths that counts as the same surface."""
@@ -85,13 +90,13 @@ class Background:
             if each.frame == frame:
                 return each
         near = self._nearest(frame, 6)
-        layers = np.stack([self._brought(each, frame, 1) for each in near])
+        layers = np.stack([self._brought(each, frame, 1, self.pictures.size) for each in near])
         rank = 1 / (1 + 0.15 * np.arange(len(near)))
         inverse, support = consensus(layers, self.tolerance, rank.astype(np.float32))
         if (inverse <= 0).any():
             # Where nothing is confirmed, what the nearest key frames hold is better than nothing.
             open_ = inverse <= 0
-            spare = np.stack([self._brought(each, frame, 0, open_) for each in near])
+            spare = np.stack([self._brought(each, frame, 0, self.pictures.size, open_) for each in near])
             loose, _ = consensus(spare, self.tolerance, rank.astype(np.float32))
             inverse = np.where(inverse > 0, inverse, loose)
         made = self._map(frame, inverse, support)
@@ -112,7 +117,8 @@ class Background:
         stack, hidden, poses = self._stack(donors)
         scale = gains(picture, hole, inverse, self.camera(frame), stack, hidden, poses)
         rows, columns = np.nonzero(wanted)
-        found, colour, seen = self._behind(frame, rows, columns, stack, hidden, poses, scale)
+        found = self._behind(frame, wanted, stack, hidden, poses, scale)[rows, columns]
+        colour, seen = gather(rows, columns, found, self.camera(frame), stack, hidden, poses, scale, NEAREST)
         inverse[rows, columns] = found
         fill = picture.astype(np.float32)
         known = ~wanted
@@ -128,7 +134,7 @@ class Background:
         done = _seamless(picture, done, hole)
         support = np.where(hole, 0, own.confidence).astype(np.uint8)
         support[rows[painted], columns[painted]] = np.minimum(seen[painted], 255)
-        inverse = _extended(inverse, invented, invented)
+        inverse = self._carried_on(inverse, invented, self._chosen_at)
         depth = attrs.evolve(self._map(frame, inverse, support), invented=invented)
         return Plate(frame, done, depth, filled, invented)
 
@@ -142,14 +148,16 @@ class Background:
         weak = ~np.isfinite(own.depth) | (own.confidence == 0)
         if not weak.any():
             return own
-        layers = np.stack([self._brought(each, frame, 1, weak) for each in self._spread(frame)])
-        found, votes = consensus(layers, self.tolerance)
+        small = _touched(weak, self._ground_at)
+        layers = np.stack([self._brought(each, frame, 1, self._ground_at, small) for each in self._spread(frame)])
+        brought, votes = consensus(layers, self.tolerance)
+        found, votes = self._enlarged(brought), _nearest_of(votes, self.pictures.size)
         with np.errstate(divide="ignore"):
             inverse = np.nan_to_num(1 / own.depth, nan=0.0).astype(np.float32)
         taken = weak & (found > 0)
         support = np.where(taken, votes, own.confidence).astype(np.uint8)
         left = weak & ~taken
-        return self._map(frame, _extended(np.where(taken, found, inverse), left, left), support)
+        return self._map(frame, self._carried_on(np.where(taken, found, inverse), left, self._ground_at), support)
 
     def place(self, frame: int, pixel: ArrayLike, *, radius: float | None = None) -> tuple[Array, float]:
         """Where the ray of a frame's pixel meets the background, seen there or in other frames only; see ``DepthMap``.
@@ -179,7 +187,7 @@ class Background:
             wanted[top:bottom, left:right] = True
         own = [each for each in self.maps if each.frame == frame]
         sources = own + [each for each in self._spread(frame) if each.frame != frame]
-        layers = np.stack([self._brought(each, frame, 1, wanted) for each in sources])
+        layers = np.stack([self._brought(each, frame, 1, size, wanted) for each in sources])
         found = self._map(frame, *consensus(layers, self.tolerance))
         return found.place(spot, radius=reach)
 
@@ -188,18 +196,48 @@ class Background:
         return self.pictures.cameras[frame]
 
     def _brought(
-        self, source: DepthMap, frame: int, least: int, wanted: NDArray[np.bool_] | None = None
+        self,
+        source: DepthMap,
+        frame: int,
+        least: int,
+        size: tuple[int, int],
+        wanted: NDArray[np.bool_] | None = None,
     ) -> NDArray[np.float32]:
-        """Inverse depth (h, w) that a key frame gives to another frame's wanted pixels."""
-        inverse = self._known(source, least)
-        return projected_inverse(inverse, source.camera, self.camera(frame), self.pictures.size, wanted)
+        """Inverse depth (h, w) that a key frame gives to another frame's wanted pixels, at a size (width, height)."""
+        inverse = self._known(source, least, size)
+        seen, wanting = self._resized_view(source.camera, size), self._resized_view(self.camera(frame), size)
+        return projected_inverse(inverse, seen, wanting, size, wanted)
 
-    def _known(self, source: DepthMap, least: int) -> NDArray[np.float32]:
-        """Inverse depth (h, w) of a key frame, 0 where it has none of this confidence; kept."""
-        key = source.frame, least
+    def _known(self, source: DepthMap, least: int, size: tuple[int, int]) -> NDArray[np.float32]:
+        """Inverse depth of a key frame, 0 where it has none of this confidence, at a size; kept."""
+        key = source.frame, least, size
         if key not in self._inverse:
-            self._inverse[key] = inverse_of(source, least)
+            self._inverse[key] = resized(inverse_of(source, least), size, 2 * self.tolerance)
         return self._inverse[key]
+
+    def _reduced(self, longest: int | None) -> tuple[int, int]:
+        width, height = self.pictures.size
+        share = min(1.0, (longest or max(width, height)) / max(width, height))
+        return round(share * width), round(share * height)
+
+    def _resized_view(self, camera: Camera, size: tuple[int, int]) -> Camera:
+        full = self.pictures.size
+        return camera if size == full else scaled_camera(camera, (size[0] / full[0], size[1] / full[1]))
+
+    def _enlarged(self, inverse: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Reduced inverse depths at the size of the frames, edges kept."""
+        return resized(inverse, self.pictures.size, 2 * self.tolerance)
+
+    def _carried_on(
+        self, inverse: NDArray[np.float32], hole: NDArray[np.bool_], size: tuple[int, int]
+    ) -> NDArray[np.float32]:
+        """Inverse depth (h, w) everywhere: in the hole, and where there is none, from around, worked out at a size."""
+        missing = hole | (inverse <= 0)
+        if not missing.any():
+            return inverse
+        small = _touched(hole, size)
+        around = self._enlarged(_extended(_nearest_of(inverse, size), small, small))
+        return np.where(missing, around, inverse).astype(np.float32)
 
     def _map(self, frame: int, inverse: NDArray[np.float32], support: NDArray[np.uint8]) -> DepthMap:
         with np.errstate(divide="ignore"):
@@ -225,29 +263,29 @@ class Background:
     def _behind(
         self,
         frame: int,
-        rows: NDArray[np.int64],
-        columns: NDArray[np.int64],
+        wanted: NDArray[np.bool_],
         stack: NDArray[np.uint8],
         hidden: NDArray[np.uint8],
         poses: list[Camera],
         scale: NDArray[np.float32],
-    ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]:
-        """Inverse depth (k,), colour (k, 3) and number of frames that see it, of the pixels wanted."""
-        sources = self._spread(frame)
-        camera, size = self.camera(frame), self.pictures.size
-        wanted = np.zeros(size[::-1], bool)
-        wanted[rows, columns] = True
+    ) -> NDArray[np.float32]:
+        """Inverse depth (h, w) of the pixels wanted, 0 where none is found."""
+        sources, size = self._spread(frame), self._chosen_at
+        small = _touched(wanted, size)
+        rows, columns = np.nonzero(small)
         loose, firm = (
-            np.stack([self._brought(each, frame, least, wanted)[rows, columns] for each in sources], axis=1)
+            np.stack([self._brought(each, frame, least, size, small)[rows, columns] for each in sources], axis=1)
             for least in (0, 3)
         )
-        known, knowing = np.stack([self._known(each, 1) for each in sources]), [each.camera for each in sources]
+        known = np.stack([self._known(each, 1, size) for each in sources])
+        knowing = [self._resized_view(each.camera, size) for each in sources]
         inverse = choose_depth(
-            rows, columns, loose, firm, camera, stack, hidden, poses, scale, self.tolerance, known, knowing
-        )
-        inverse = _voted(inverse, rows, columns, size, self.tolerance)
-        colour, seen = gather(rows, columns, inverse, camera, stack, hidden, poses, scale, NEAREST)
-        return inverse, colour, seen
+            rows, columns, loose, firm, self._resized_view(self.camera(frame), size), stack, hidden, poses, scale,
+            self.tolerance, known, knowing,
+        )  # fmt: skip
+        found = np.zeros(size[::-1], np.float32)
+        found[rows, columns] = _voted(inverse, rows, columns, size, self.tolerance)
+        return self._enlarged(found)
 
     def _spread(self, frame: int) -> list[DepthMap]:
         """Key frames that give depth behind the subject: the nearest, and some from farther away on both sides."""
@@ -256,6 +294,26 @@ class Background:
         rest = order[SOURCES // 2 :]
         step = max(1, -(-len(rest) // (SOURCES - len(near))))
         return near + rest[::step]
+
+
+def _nearest_of(values: NDArray[Any], size: tuple[int, int]) -> NDArray[Any]:
+    """Values (h, w) at another size: each pixel takes the nearest one's."""
+    import cv2
+
+    if values.shape == size[::-1]:
+        return values
+    made: NDArray[Any] = cv2.resize(values, size, interpolation=cv2.INTER_NEAREST_EXACT)
+    return made
+
+
+def _touched(wanted: NDArray[np.bool_], size: tuple[int, int]) -> NDArray[np.bool_]:
+    """Which pixels of a smaller size hold anything of what is wanted."""
+    import cv2
+
+    if wanted.shape == size[::-1]:
+        return wanted
+    touched: NDArray[np.bool_] = cv2.resize(wanted.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
+    return touched
 
 
 def _voted(
