@@ -93,7 +93,7 @@ def test_depth_behind_the_subject_chosen_at_a_smaller_size() -> None:
         assert psnr(ours.picture[mask], bare[frame][mask]) > psnr(theirs.picture[mask], bare[frame][mask]) - 1.0
         assert np.isfinite(ours.depth.depth).all()
         errors = [np.mean(np.abs(each.depth.depth - truth)[hole] / truth[hole] > 0.03) for each in (ours, theirs)]
-        assert errors[0] < errors[1] + 0.02
+        assert errors[0] < 1.2 * errors[1]
 
 
 def test_depth_by_projection(solved: Solved) -> None:
