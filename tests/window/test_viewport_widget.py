@@ -10,6 +10,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from app.window.viewport import Handle, VertexChosen, VertexMoved, VertexMoving, Viewport
 from app.window.viewport.orbit import Orbit
@@ -82,12 +84,12 @@ def test_drag_reports_live_and_at_the_end(view: Viewport) -> None:
 
 def test_moving_the_mesh_changes_the_picture(view: Viewport) -> None:
     """An update in place is drawn at the next paint, without a new actor."""
-    actors = view.host.plotter.renderer.GetActors().GetNumberOfItems()
+    actors = view.scene.renderer.GetActors().GetNumberOfItems()
     before = view.grab().toImage()
     view.move_mesh(np.add(view.vertices, (0.3, 0.0, 0.0)))
     settle()
     assert view.grab().toImage() != before
-    assert view.host.plotter.renderer.GetActors().GetNumberOfItems() == actors
+    assert view.scene.renderer.GetActors().GetNumberOfItems() == actors
 
 
 def test_many_changes_are_drawn_once(view: Viewport) -> None:
@@ -103,11 +105,15 @@ def test_many_changes_are_drawn_once(view: Viewport) -> None:
 def test_leaving_out_what_faces_away_changes_no_pixel(view: Viewport, ball: tuple[np.ndarray, np.ndarray]) -> None:
     """A closed ball looks the same drawn whole; of an open one the inside is drawn also while it moves."""
 
+    window, pixels = view.host.stage.render_window, vtkUnsignedCharArray()
+
     def pictures() -> list[np.ndarray]:
         made = []
         for left_out in (True, False):
             view.scene.leave_out_hidden(left_out)
-            made.append(view.host.plotter.screenshot(return_img=True))
+            window.Render()
+            window.GetRGBACharPixelData(0, 0, view.width() - 1, view.height() - 1, 0, pixels)
+            made.append(vtk_to_numpy(pixels).copy())
         return made
 
     view._draw(fine=False)

@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 Place3 = tuple[float, float, float]
 REST = 400
 """Milliseconds after the last stroke of a key at which the pose is committed."""
+AHEAD = 500
+"""Milliseconds that the first picture of a character has for itself before its first drag is prepared."""
 
 
 class Posing(QObject):
@@ -54,6 +56,11 @@ class Posing(QObject):
         self._rest.setSingleShot(True)
         self._rest.setInterval(REST)
         self._rest.timeout.connect(self.release)
+        self._ahead_of: Character | None = None
+        self._ahead = QTimer(self)
+        self._ahead.setSingleShot(True)
+        self._ahead.setInterval(AHEAD)
+        self._ahead.timeout.connect(lambda: self._ahead_of and self._make_ready(self._ahead_of))
 
     def possible(self, character: Character) -> bool:
         """Whether the character has a motion that can be edited."""
@@ -83,8 +90,10 @@ class Posing(QObject):
         return self._rest.isActive()
 
     def make_ready(self, character: Character) -> None:
-        """Prepare in the background what the first drag of a character would wait for."""
-        self._make_ready(character)
+        """Prepare in the background what the first drag of a character would wait for, once its picture is there."""
+        self._ahead_of = character
+        if not self._ahead.isActive() and (self.project.session.stages.base(character.id).key,) not in self._ready:
+            self._ahead.start()
 
     def _make_ready(self, character: Character, *of: int) -> None:
         # Of the same base each preparation is begun once; what it finds is kept with the project's media.
@@ -241,5 +250,6 @@ class Posing(QObject):
     def close(self) -> None:
         """End the threads."""
         self._rest.stop()
+        self._ahead.stop()
         self.live.close()
         self.calls.close()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pyvista as pv
 from numpy.typing import NDArray
 
 PIECES = 24
@@ -18,8 +17,10 @@ def round_step(radius: float) -> float:
     return power * next(factor for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= wanted * 0.999)
 
 
-def ground_grid(centre: NDArray[np.float64], radius: float, height: float) -> pv.PolyData:
-    """Lines round a centre (2,) on z = height, cut in pieces, with colour and opacity at each point."""
+def ground_grid(
+    centre: NDArray[np.float64], radius: float, height: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.uint8]]:
+    """Points (n, 3) round a centre (2,) on z = height, the lines between them (m, 2), colour and opacity (n, 4)."""
     step = round_step(radius)
     count = int(radius / step)
     origin = np.round(centre / step) * step
@@ -36,7 +37,4 @@ def ground_grid(centre: NDArray[np.float64], radius: float, height: float) -> pv
     rgba[:, 3] = (fade * np.where(major, 150, 70)).astype(np.uint8)
     points = np.column_stack([flat + origin, np.full(len(flat), height)])
     first = np.arange(0, len(points), PIECES + 1)[:, None] + np.arange(PIECES)[None]
-    cells = np.stack([np.full(first.shape, 2), first, first + 1], axis=-1).reshape(-1, 3)
-    grid = pv.PolyData(points.astype(np.float32), lines=cells.ravel())
-    grid.point_data["rgba"] = rgba
-    return grid
+    return points, np.stack([first, first + 1], axis=-1).reshape(-1, 2), rgba

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import pyvista as pv
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QImage, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
@@ -14,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 
 from app.window.viewport.background import Background
 from app.window.viewport.lens import Lens
+from app.window.viewport.offscreen import Offscreen
 from app.window.viewport.scene import Scene
 
 
@@ -25,9 +23,8 @@ class RasterHost(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("render host")
-        self.plotter: Any = pv.Plotter(off_screen=True, window_size=(64, 64), lighting="none")
-        self.plotter.render_window.SetAlphaBitPlanes(1)
-        self.scene = Scene(self.plotter)
+        self.stage: Offscreen | None = Offscreen()
+        self.scene = Scene(self.stage)
         self.background = Background()
         self._pixels = vtkUnsignedCharArray()
         self._rows: np.ndarray | None = None
@@ -37,11 +34,11 @@ class RasterHost(QWidget):
 
     def draw(self, lens: Lens, *, fine: bool) -> None:
         """Draw the scene by a lens; ``fine`` draws twice as large and scales down, for a view at rest."""
-        if self.plotter is None or min(lens.size) < 2:
+        if self.stage is None or min(lens.size) < 2:
             return
         factor = self.devicePixelRatioF() * (2.0 if fine else 1.0)
         size = (max(round(lens.size[0] * factor), 2), max(round(lens.size[1] * factor), 2))
-        window = self.plotter.render_window
+        window = self.stage.render_window
         if size != self._size:
             window.SetSize(*size)
             self._size = size
@@ -70,12 +67,10 @@ class RasterHost(QWidget):
 
     def finish(self) -> None:
         """Close the render window; nothing can be drawn afterwards."""
-        if self.plotter is None:
+        if self.stage is None:
             return
-        plotter, self.plotter = self.plotter, None
+        stage, self.stage = self.stage, None
         self._picture, self._rows = QImage(), None
         self.scene.clear()
-        plotter.render_window.Finalize()
-        plotter.close()
-        plotter.deep_clean()
+        stage.finish()
         self.setProperty("finished", True)

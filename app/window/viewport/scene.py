@@ -1,34 +1,51 @@
 """The one 3D scene: a mesh that is updated in place, the ground, points, the camera's path. Knows no widget.
 
-It needs pyvista's plotter interface only, so it stands in an off-screen plotter and in an interactor alike.
+It needs a renderer and its window only, so it stands in a picture and in an interactor alike. VTK is used as it is:
+pyvista's plotter brings a second's worth of libraries for charts, and the first 3D picture would wait for them.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
-import pyvista as pv
+import vtkmodules.vtkRenderingOpenGL2  # noqa: F401 - what windows and renderers are made of
 from numpy.typing import ArrayLike, NDArray
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkFiltersCore import vtkPolyDataNormals
-from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
+from vtkmodules.vtkRenderingCore import vtkLight, vtkRenderer, vtkRenderWindow
 
 from app.window.viewport.closed import is_closed
 from app.window.viewport.grid import ground_grid
 from app.window.viewport.lens import Lens
+from app.window.viewport.shapes import Shape, actor_of
 
 Array = NDArray[np.float64]
 CLAY = (214, 202, 186)
+SHADE = (0.055, 0.065, 0.08)
+POINTS, PATH = (0x8C / 255, 0x96 / 255, 0xA2 / 255), (0xC3 / 255, 0x9B / 255, 1.0)
+LIGHTS = (
+    ((-0.9, 1.3, 1.4), 0.78, (1.0, 0xF4 / 255, 0xE4 / 255)),
+    ((1.4, 0.4, 0.9), 0.34, (0xDC / 255, 0xE8 / 255, 1.0)),
+    ((0.2, 0.9, -1.6), 0.40, (1.0, 1.0, 1.0)),
+)
+"""Place beside the camera, strength and colour."""
+
+
+class Stage(Protocol):
+    """Where a scene stands."""
+
+    renderer: vtkRenderer
+    render_window: vtkRenderWindow
 
 
 class Scene:
     """What is seen in 3D. Every change marks the scene; drawing is the host's business."""
 
-    def __init__(self, plotter: Any) -> None:
-        self.plotter = plotter
-        self._mesh: pv.PolyData | None = None
-        self._shadow: pv.PolyData | None = None
+    def __init__(self, stage: Stage) -> None:
+        self.renderer = stage.renderer
+        self._mesh: Shape | None = None
+        self._shadow: Shape | None = None
         self._far: Array | None = None
         self._own: NDArray[np.uint8] = np.zeros((0, 3), np.uint8)
         self._ground_height = 0.0
@@ -36,46 +53,38 @@ class Scene:
         self._actors: dict[str, Any] = {}
         self._shown: dict[str, bool] = {}
         self.extent = np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]])
-        window = plotter.render_window
-        window.SetMultiSamples(0)
-        plotter.renderer.SetUseDepthPeeling(False)
-        plotter.renderer.SetBackgroundAlpha(0.0)
-        plotter.renderer.SetBackground(0.0, 0.0, 0.0)
-        plotter.renderer.camera_set = True
+        stage.render_window.SetMultiSamples(0)
+        self.renderer.SetUseDepthPeeling(False)
+        self.renderer.SetBackgroundAlpha(0.0)
+        self.renderer.SetBackground(0.0, 0.0, 0.0)
         self._light()
 
     def _light(self) -> None:
-        self.plotter.remove_all_lights()
-        for place, strength, colour in (
-            ((-0.9, 1.3, 1.4), 0.78, "#FFF4E4"),
-            ((1.4, 0.4, 0.9), 0.34, "#DCE8FF"),
-            ((0.2, 0.9, -1.6), 0.40, "#FFFFFF"),
-        ):
-            light = pv.Light(position=place, focal_point=(0, 0, 0), intensity=strength, color=colour)
-            light.set_camera_light()
-            light.positional = False
-            self.plotter.add_light(light)
+        self.renderer.RemoveAllLights()
+        for place, strength, colour in LIGHTS:
+            light = vtkLight()
+            light.SetLightTypeToCameraLight()
+            light.SetPosition(*place)
+            light.SetFocalPoint(0.0, 0.0, 0.0)
+            light.SetIntensity(strength)
+            light.SetColor(*colour)
+            light.PositionalOff()
+            self.renderer.AddLight(light)
 
     def set_mesh(self, vertices: ArrayLike, faces: ArrayLike, colours: NDArray[np.uint8] | None = None) -> None:
         """Show a mesh: vertices (v, 3), triangles (m, 3), colours (v, 3) where it has them."""
         self.clear_mesh()
         corners = np.asarray(faces, np.int64).reshape(-1, 3)
-        cells = np.column_stack([np.full(len(corners), 3), corners]).ravel()
-        mesh = pv.PolyData(np.array(vertices, np.float32), cells)
-        paint = np.tile(np.array(CLAY, np.uint8), (mesh.n_points, 1)) if colours is None else colours
-        mesh.point_data["colour"] = np.ascontiguousarray(paint[:, :3], np.uint8)
-        mesh.set_active_scalars("colour")
-        self._own = np.array(mesh.point_data["colour"])
+        paint = np.tile(np.array(CLAY, np.uint8), (len(vertices), 1)) if colours is None else colours[:, :3]  # type: ignore[arg-type]
+        mesh = Shape(vertices, triangles=corners, colours=paint)
+        self._own = np.array(mesh.colours)
         normals = vtkPolyDataNormals()
-        normals.SetInputData(mesh)
+        normals.SetInputData(mesh.data)
         for switch in (normals.SplittingOff, normals.ConsistencyOff, normals.AutoOrientNormalsOff):
             switch()
-        mapper = vtkPolyDataMapper()
-        mapper.SetInputConnection(normals.GetOutputPort())
-        mapper.SetColorModeToDirectScalars()
-        actor = vtkActor()
-        actor.SetMapper(mapper)
+        actor = actor_of(normals)
         look = actor.GetProperty()
+        look.LightingOn()
         look.SetInterpolationToPhong()
         look.SetAmbient(0.20)
         look.SetDiffuse(0.85)
@@ -83,7 +92,7 @@ class Scene:
         look.SetSpecularPower(18.0)
         self._mesh, self._closed = mesh, is_closed(mesh.points, corners)
         self._put("mesh", actor)
-        self._make_shadow(mesh, cells)
+        self._make_shadow(mesh, corners)
         self.extent = np.array([mesh.points.min(0), mesh.points.max(0)], np.float64)
 
     def clear_mesh(self) -> None:
@@ -98,9 +107,7 @@ class Scene:
             return
         places = np.asarray(vertices)
         self._mesh.points[:] = places
-        self._mesh.GetPoints().GetData().Modified()
-        self._mesh.GetPoints().Modified()
-        self._mesh.Modified()
+        self._mesh.moved()
         self.extent = np.array([places.min(0), places.max(0)], np.float64)
         self._move_shadow()
 
@@ -115,22 +122,14 @@ class Scene:
 
     def paint_mesh(self, colours: NDArray[np.uint8] | None) -> None:
         """Give the vertices other colours (v, 3), or their own again."""
-        if self._mesh is None:
+        if self._mesh is None or self._mesh.colours is None:
             return
-        self._mesh.point_data["colour"][:] = self._own if colours is None else colours
-        self._mesh.GetPointData().GetScalars().Modified()
-        self._mesh.Modified()
+        self._mesh.colours[:] = self._own if colours is None else colours
+        self._mesh.painted()
 
-    def _make_shadow(self, mesh: pv.PolyData, cells: NDArray[np.int64]) -> None:
-        self._shadow = pv.PolyData(np.array(mesh.points), cells)
-        mapper = vtkPolyDataMapper()
-        mapper.SetInputData(self._shadow)
-        mapper.ScalarVisibilityOff()
-        actor = vtkActor()
-        actor.SetMapper(mapper)
-        actor.GetProperty().LightingOff()
-        actor.GetProperty().SetColor(0.055, 0.065, 0.08)
-        self._put("shadow", actor)
+    def _make_shadow(self, mesh: Shape, corners: NDArray[np.int64]) -> None:
+        self._shadow = Shape(mesh.points, triangles=corners)
+        self._put("shadow", actor_of(self._shadow, colour=SHADE))
         self._move_shadow()
 
     def _move_shadow(self) -> None:
@@ -139,30 +138,32 @@ class Scene:
         height = float(np.ptp(self._mesh.points[:, 2])) or 1.0
         self._shadow.points[:] = self._mesh.points
         self._shadow.points[:, 2] = self._ground_height + 0.001 * height
-        self._shadow.GetPoints().GetData().Modified()
-        self._shadow.GetPoints().Modified()
-        self._shadow.Modified()
+        self._shadow.moved()
 
     def set_ground(self, centre: ArrayLike, radius: float, height: float = 0.0) -> None:
         """Draw a grid on the ground round a place (2,), with the height of the ground."""
         self._ground_height = height
-        lines = ground_grid(np.asarray(centre, np.float64)[:2], radius, height)
-        self._add("ground", lines, scalars="rgba", rgba=True, lighting=False, line_width=1)
+        points, lines, rgba = ground_grid(np.asarray(centre, np.float64)[:2], radius, height)
+        self._put("ground", actor_of(Shape(points, lines=lines, colours=rgba)))
 
     def set_points(self, points: ArrayLike) -> None:
         """Show background points (p, 3)."""
         places = np.asarray(points, np.float32).reshape(-1, 3)
         self._remove("points")
         if len(places):
-            self._add("points", pv.PolyData(places), color="#8C96A2", point_size=3.0, lighting=False)
+            actor = actor_of(Shape(places), colour=POINTS)
+            actor.GetProperty().SetPointSize(3.0)
+            self._put("points", actor)
 
     def set_camera_path(self, centres: ArrayLike) -> None:
         """Show the way of the camera (n, 3)."""
         places = np.asarray(centres, np.float64).reshape(-1, 3)
         self._remove("path")
         if len(places) > 1:
-            line = pv.lines_from_points(places)
-            self._add("path", line, color="#C39BFF", line_width=2, lighting=False)
+            following = np.arange(len(places) - 1)
+            actor = actor_of(Shape(places, lines=np.stack([following, following + 1], axis=1)), colour=PATH)
+            actor.GetProperty().SetLineWidth(2.0)
+            self._put("path", actor)
 
     def set_background(self, vertices: ArrayLike, faces: ArrayLike, colours: NDArray[np.uint8]) -> None:
         """Show the measured background: a mesh (n, 3), (m, 3) with colours (n, 3)."""
@@ -170,10 +171,8 @@ class Scene:
         self._remove("background")
         self._far = None
         if len(places):
-            corners = np.asarray(faces, np.int64).reshape(-1, 3)
-            mesh = pv.PolyData(places, np.column_stack([np.full(len(corners), 3), corners]).ravel())
-            mesh.point_data["colour"] = np.ascontiguousarray(colours[:, :3], np.uint8)
-            self._add("background", mesh, scalars="colour", rgb=True, lighting=False)
+            shape = Shape(places, triangles=np.asarray(faces, np.int64).reshape(-1, 3), colours=colours[:, :3])
+            self._put("background", actor_of(shape))
             self._far = np.array([places.min(0), places.max(0)], np.float64)
 
     @property
@@ -193,7 +192,7 @@ class Scene:
 
     def look_through(self, lens: Lens) -> None:
         """Draw by a lens from now on."""
-        camera = self.plotter.renderer.GetActiveCamera()
+        camera = self.renderer.GetActiveCamera()
         position, focus, up = lens.pose()
         camera.SetPosition(*position)
         camera.SetFocalPoint(*focus)
@@ -204,15 +203,9 @@ class Scene:
         camera.SetExplicitProjectionTransformMatrix(matrix)
         camera.SetUseExplicitProjectionTransformMatrix(True)
 
-    def _add(self, name: str, mesh: pv.PolyData, **look: Any) -> None:
-        self._remove(name)
-        actor = self.plotter.add_mesh(mesh, render=False, reset_camera=False, show_scalar_bar=False, **look)
-        self._actors[name] = actor
-        actor.SetVisibility(self._shown.get(name, True))
-
     def _put(self, name: str, actor: Any) -> None:
         self._remove(name)
-        self.plotter.renderer.AddActor(actor)
+        self.renderer.AddActor(actor)
         self._actors[name] = actor
         actor.SetVisibility(self._shown.get(name, True))
 
@@ -227,7 +220,7 @@ class Scene:
     def _remove(self, name: str) -> None:
         actor = self._actors.pop(name, None)
         if actor is not None:
-            self.plotter.renderer.RemoveActor(actor)
+            self.renderer.RemoveActor(actor)
 
     def clear(self) -> None:
         """Take everything away, so that nothing outlives its render window."""
