@@ -8,20 +8,28 @@ import importlib
 import os
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QMessageLogContext, QTimer, QtMsgType, qInstallMessageHandler
 from PySide6.QtWidgets import QApplication
 
-from app.actions.kinds import kind_of
-from app.actions.session import Session
 from app.window import fonts, icons, settings, theme
-from app.window.viewport.hosts import Choice
+from app.window.plain_imports import use_plain_imports
 from imitation.errors import InputError
 
-SLOW = ("app.window.viewport.scene", "scipy.sparse.linalg", "cv2", "numba", "imitation.deformation.deformer")
-"""What the first 3D picture needs comes first, then what the first drag needs."""
+if TYPE_CHECKING:
+    from app.actions.session import Session
+    from app.window.viewport.hosts import Choice
+
+PICTURE = ("app.window.viewport.scene", "app.window.character", "app.window.performance")
+"""What the first 3D picture and the first look at a page need."""
+SLOW = ("scipy.sparse.linalg", "cv2", "numba", "imitation.deformation.deformer")
+"""What the first drag needs."""
+PAUSE = 1.5
+"""Seconds between the two: whoever goes straight to a character gets its picture first."""
 messages: list[str] = []
 
 
@@ -44,12 +52,14 @@ def make_application() -> QApplication:
 
 
 def load_slow_libraries() -> threading.Thread:
-    """Load in a thread what the first drag and the first 3D picture will need."""
+    """Load in a thread what the first 3D picture and, a while later, what the first drag will need."""
 
     def load() -> None:
-        for name in SLOW:
-            with contextlib.suppress(ImportError):
-                importlib.import_module(name)
+        for names, pause in ((PICTURE, PAUSE), (SLOW, 0.0)):
+            for name in names:
+                with contextlib.suppress(ImportError):
+                    importlib.import_module(name)
+            time.sleep(pause)
 
     thread = threading.Thread(target=load, name="libraries", daemon=True)
     thread.start()
@@ -62,6 +72,7 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
     A path that is no project is taken into an empty one; what cannot be opened is told in the window.
     """
     _need_a_screen()
+    use_plain_imports()
     os.environ.setdefault("QT_API", "pyside6")
     qInstallMessageHandler(_heard)
     with _kept():
@@ -105,12 +116,16 @@ def _need_a_screen() -> None:
 
 def _first(path: Path | None, sample: bool) -> tuple[Session, str]:
     """The project to begin with, and why the one that was asked for cannot be opened."""
+    from app.actions.session import Session
+
     if path is None and sample:
         from app.window.sample import sample_session
 
         return sample_session(), ""
     if path is None:
         return Session.new(), ""
+    from app.actions.kinds import kind_of
+
     try:
         known = kind_of(path)
         return (Session.new() if known not in ("project", "") else Session.open(path)), ""

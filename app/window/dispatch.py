@@ -73,7 +73,7 @@ class Dispatch(QObject):
             "clear_masks": lambda: project.edit(scene.clear_masks),
             "measure_background": partial(measure, project),
             "render": self._render,
-            **{page: partial(shell.show_workspace, page) for page in shell.pages.workspaces},
+            **{page: partial(shell.show_workspace, page) for page in shell.pages.names},
             "history": lambda: shell.side.ask_for("history"),
             "log": lambda: shell.side.ask_for("log"),
             "light": self.switch_look,

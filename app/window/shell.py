@@ -3,37 +3,37 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QTimer
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragLeaveEvent, QDropEvent, QImage, QResizeEvent
-from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QVBoxLayout, QWidget
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDragLeaveEvent, QDropEvent, QImage, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QMainWindow
 
 from app.actions.session import Session
 from app.model.document import Document
 from app.window import icons, settings, theme
 from app.window.background_call import BackgroundCalls
 from app.window.care import Care
-from app.window.character import CharacterWorkspace
 from app.window.dispatch import Dispatch
 from app.window.drops import Drops
 from app.window.file_commands import FileCommands
 from app.window.navigation import Navigator
 from app.window.opening import Opened
+from app.window.pages import NamedPages, Pages
 from app.window.panels import SidePanel
-from app.window.performance import PerformanceWorkspace
 from app.window.project import Project
 from app.window.split import Split
+from app.window.stacking import above, beside
 from app.window.statusline import StatusLine
+from app.window.ties import once, tie
 from app.window.timeline_panel import TimelinePanel
 from app.window.topbar import TopBar
-from app.window.video import VideoWorkspace
 from app.window.viewport.hosts import Choice
 from app.window.welcome import Welcome
-from app.window.workspaces import Pages, Workspace, first_workspace
+from app.window.workspaces import Workspace, first_workspace
 
 LOW = 800
 """Pixels of height below which the lanes are one line each."""
 
 
-class Shell(QMainWindow):
+class Shell(QMainWindow, NamedPages):
     """One window on one project."""
 
     def __init__(self, session: Session, *, viewport: Choice = "auto") -> None:
@@ -48,58 +48,32 @@ class Shell(QMainWindow):
         self.files = FileCommands(self)
         with theme.bare():
             self._build(viewport)
-        self.navigator = Navigator(lambda: self.project, self)
-        self._connect()
+            self.navigator = Navigator(lambda: self.project, self)
+            self._connect()
+            self.pages.begin(first_workspace(session.document))
         self.dispatch = Dispatch(self)
         self.drops = Drops(self)
-        self._lanes = QTimer(self)
-        self._lanes.setSingleShot(True)
-        self._lanes.setInterval(60)
-        self._lanes.timeout.connect(self.show_lanes)
-        self._refresh = QTimer(self)
-        self._refresh.setSingleShot(True)
-        self._refresh.setInterval(0)
-        self._refresh.timeout.connect(self.refresh)
-        self._picture: tuple[int, QImage] | None = None
+        self._lanes, self._refresh = once(self, 60, self.show_lanes), once(self, 0, self.refresh)
+        self.shown: tuple[int, QImage] | None = None
+        self._seen = False
         self.open_session(session)
 
     def _build(self, viewport: Choice) -> None:
         self.bar, self.status, self.timeline = TopBar(), StatusLine(), TimelinePanel()
-        self.video, self.character, self.welcome = VideoWorkspace(), CharacterWorkspace(viewport), Welcome()
-        self.performance = PerformanceWorkspace(viewport)
-        pages = {"video": self.video, "character": self.character, "performance": self.performance}
-        self.pages = Pages(pages, self.welcome)
+        self.welcome = Welcome()
+        self.pages = Pages(self.welcome, viewport)
         self.side = SidePanel()
         self.care = Care(self)
         self.split = Split(self.pages, self.timeline)
         self.split.chosen.connect(self._fit_lanes)
-        body = QWidget()
+        body = beside(self.split, self.side, margin=8)
         body.setObjectName("body")
-        inner = QHBoxLayout(body)
-        inner.setContentsMargins(8, 8, 8, 8)
-        inner.setSpacing(8)
-        inner.addWidget(self.split, 1)
-        inner.addWidget(self.side)
-        central = QWidget()
-        column = QVBoxLayout(central)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.bar)
-        column.addWidget(self.care.notices)
-        column.addWidget(body, 1)
-        column.addWidget(self.status)
-        self.setCentralWidget(central)
+        self.setCentralWidget(above(self.bar, self.care.notices, body, self.status))
 
     def _connect(self) -> None:
         for source in (self.bar, self.welcome, self.timeline.transport):
             source.wanted.connect(self.do)
-        for workspace in self.pages.workspaces.values():
-            workspace.hint.connect(self._hint)
-            workspace.wanted.connect(self.do)
-            workspace.run_wanted.connect(lambda: self.do("propagate"))
-            workspace.lanes_changed.connect(lambda: self._lanes.isActive() or self._lanes.start())
-        self.character.inspector.go.connect(self.navigator.go)
-        self.character.inspector.on_release.connect(self._propagate_on_release)
+        self.pages.made.connect(lambda page: tie(self, page))
         self.navigator.playback.playing_changed.connect(self.timeline.transport.show_playing)
 
     # the project -------------------------------------------------------------------------------------------------
@@ -114,7 +88,8 @@ class Shell(QMainWindow):
         self._close_project()
         opened = self.opened = Opened(session, self)
         project = opened.project
-        opened.keeper.propagate_on_release = self.character.inspector.automatic.isChecked()
+        if "character" in self.pages.workspaces:
+            opened.keeper.propagate_on_release = self.character.inspector.automatic.isChecked()
         opened.clip_opened.connect(self._attach)
         project.document_changed.connect(self._changed)
         project.frame_changed.connect(self._show_frame)
@@ -133,8 +108,8 @@ class Shell(QMainWindow):
         self.side.attach(project)
         self.show_workspace(first_workspace(project.document))
         self.setFocus()
-        opened.keeper.keep_up()
         self.care.attach(project)
+        self._take_up()
 
     def _attach(self) -> None:
         """Tie everything that shows frames to the clip."""
@@ -153,7 +128,7 @@ class Shell(QMainWindow):
         self.care.detach()
         for workspace in self.pages.workspaces.values():
             workspace.detach()
-        opened, self.opened = self.opened, None
+        opened, self.opened, self.shown = self.opened, None, None
         if opened is not None:
             opened.close()
             opened.deleteLater()
@@ -168,8 +143,8 @@ class Shell(QMainWindow):
         if self.pages.welcoming:
             self.status.show_hint(self.welcome.HINT)
         self.timeline.setVisible(not self.pages.welcoming and not self.in_sight().own_timeline)
-        if self._picture is not None:
-            self.in_sight().show_picture(*self._picture)
+        if self.shown is not None:
+            self.in_sight().show_picture(*self.shown)
         self._refresh.start()
 
     def _changed(self, before: Document, after: Document) -> None:
@@ -179,6 +154,23 @@ class Shell(QMainWindow):
             workspace.document_changed(before, after)
         self._refresh.start()
 
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Results are read, and work is taken up, once the window is on the screen."""
+        super().paintEvent(event)
+        if not self._seen:
+            self._seen = True
+            QTimer.singleShot(0, self._take_up)
+
+    def _take_up(self) -> None:
+        if self._seen and self.opened is not None:
+            self.opened.keeper.keep_up()
+            self._refresh.start()
+
+    def lanes_soon(self) -> None:
+        """Show the lanes anew in a moment, however often it is asked for."""
+        if not self._lanes.isActive():
+            self._lanes.start()
+
     def refresh_soon(self) -> None:
         """Show the state once whatever is under way is done."""
         self._refresh.start()
@@ -186,7 +178,7 @@ class Shell(QMainWindow):
     def refresh(self) -> None:
         """Show the state of the project: workspace in sight, lanes, counts."""
         project = self.project
-        if project is None:
+        if project is None or not self._seen:
             return
         self.in_sight().refresh()
         self.show_lanes()
@@ -219,13 +211,13 @@ class Shell(QMainWindow):
             self._loaded(frame, picture)
 
     def _loaded(self, frame: int, picture: QImage) -> None:
-        self._picture = (frame, picture)
+        self.shown = (frame, picture)
         self.in_sight().show_picture(frame, picture)
 
     @property
     def picture(self) -> QImage | None:
         """The frame in sight."""
-        return self._picture[1] if self._picture is not None else None
+        return self.shown[1] if self.shown is not None else None
 
     @property
     def workspace(self) -> str:
@@ -236,7 +228,8 @@ class Shell(QMainWindow):
         """The workspace chosen."""
         return self.pages.in_sight
 
-    def _hint(self, sentence: str) -> None:
+    def show_hint(self, sentence: str) -> None:
+        """Say what the mouse does in the workspace in sight, when it is that which asks."""
         if self.sender() is self.in_sight() and not self.pages.welcoming:
             self.status.show_hint(sentence)
 
@@ -256,7 +249,8 @@ class Shell(QMainWindow):
         self.side.log.add(sentence, level="note")
         self.pages.errors.tell(sentence, level="note")
 
-    def _propagate_on_release(self, on: bool) -> None:
+    def propagate_on_release(self, on: bool) -> None:
+        """Spread an edit when the mouse lets go, or not."""
         if self.opened is not None:
             self.opened.keeper.propagate_on_release = on
             self.opened.keeper.keep_up()

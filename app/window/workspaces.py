@@ -1,12 +1,12 @@
-"""The pages of the window: what every workspace answers to, and which of them is in sight."""
+"""What every workspace of the window answers to, and which one a project begins in."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QSize, Signal
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QImage
-from PySide6.QtWidgets import QStackedWidget, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.model.document import Document
 from app.window.controls import ErrorBar
@@ -14,7 +14,6 @@ from app.window.frames import FrameLoader
 from app.window.project import Project
 from app.window.timeline import Lane
 from app.window.timeline.transport import Entry
-from app.window.welcome import Welcome
 
 
 class Workspace(QWidget):
@@ -88,48 +87,6 @@ class Workspace(QWidget):
     def command(self, name: str) -> bool:
         """Do a command of this workspace; says whether it was one. Asked before all others."""
         return False
-
-
-class Pages(QStackedWidget):
-    """The workspaces by name, and the welcome that lies over those with nothing to show."""
-
-    def __init__(self, workspaces: dict[str, Workspace], welcome: Welcome) -> None:
-        super().__init__()
-        self.workspaces, self.welcome = workspaces, welcome
-        self.name = next(iter(workspaces))
-        for page in (*workspaces.values(), welcome):
-            self.addWidget(page)
-
-    @property
-    def in_sight(self) -> Workspace:
-        """The workspace chosen, be it under the welcome."""
-        return self.workspaces[self.name]
-
-    @property
-    def welcoming(self) -> bool:
-        """Whether the welcome is shown."""
-        return self.currentWidget() is self.welcome
-
-    @property
-    def errors(self) -> ErrorBar:
-        """The bar of what is seen."""
-        return self.welcome.errors if self.welcoming else self.in_sight.errors
-
-    def minimumSizeHint(self) -> QSize:
-        """As small as what is seen may be: a hidden page takes no room from the timeline."""
-        return self.currentWidget().minimumSizeHint()
-
-    def device(self) -> str:
-        """Name what draws in 3D, once something does."""
-        return next((name for page in self.workspaces.values() if (name := page.device())), "")
-
-    def choose(self, name: str, document: Document | None) -> None:
-        """Bring a workspace into sight, or the welcome where there is nothing to show."""
-        if name != self.name:
-            self.in_sight.leave()
-            self.name = name
-        empty = document is None or self.in_sight.is_empty(document)
-        self.setCurrentWidget(self.welcome if empty else self.in_sight)
 
 
 def first_workspace(document: Document) -> str:

@@ -191,9 +191,9 @@ class VideoWorkspace(Workspace):
                 each.setToolButtonStyle(style)
 
     def refresh(self) -> None:
-        """Show the project as it is."""
+        """Show the project as it is; nothing is read for a page that nobody sees."""
         project, reading = self.project, self.reading
-        if project is None or reading is None:
+        if project is None or reading is None or not self.isVisible():
             return
         edits_by_mouse.drop_old_paths(self.shown, reading, project)
         frame = self.frame
