@@ -30,6 +30,7 @@ SHUTTER = 0.5
 GRAIN_FRAMES = 5
 MOST_WORKERS = 4
 SheetForm = Literal["png", "exr"]
+Given = TypeVar("Given")
 Made = TypeVar("Made")
 
 
@@ -214,9 +215,12 @@ def _look(standing: Standing, world: World, film: Any, background: Background | 
     )  # fmt: skip
 
 
-def in_order(make: Callable[[int], Made], frames: Sequence[int]) -> Iterator[Made]:
-    """Make something of each frame, several at once, and give it in the order of the frames."""
-    workers = max(1, min(MOST_WORKERS, os.cpu_count() or 1, len(frames)))
+def in_order(make: Callable[[Given], Made], frames: Iterable[Given]) -> Iterator[Made]:
+    """Make something of each frame, or of what is given for it, several at once, and give it in their order.
+
+    No more is taken from ``frames`` than is being worked on.
+    """
+    workers = max(1, min(MOST_WORKERS, os.cpu_count() or 1))
     with ThreadPoolExecutor(workers, "film") as pool:
         waiting: deque[Future[Made]] = deque()
         try:

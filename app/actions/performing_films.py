@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.actions.compositing import in_order
 from app.actions.performing_frames import PerformanceFrames, performance_frames, sequence_footage
 from app.actions.session import Session
 from app.formats import Picture, write_video
@@ -96,10 +97,13 @@ def _followed(
     centres[:, 2] = np.median(centres[:, 2])
     reach = np.linalg.norm(np.maximum(ends[:, 1] - centres, centres - ends[:, 0]), axis=1)
     radius = float(reach.max())
-    for position, mesh in enumerate(frames):
-        shown = painted(mesh)
-        picture = _picture(shown, centres[position], radius, turns[position], ground, size, samples)
-        yield label(picture, words[position]) if words[position] else picture
+
+    def drawn(given: tuple[int, FrameMesh]) -> Picture:
+        position, mesh = given
+        picture = _picture(painted(mesh), centres[position], radius, turns[position], ground, size, samples)
+        return label(picture, words[position]) if words[position] else picture
+
+    yield from in_order(drawn, enumerate(frames))
 
 
 def _picture(

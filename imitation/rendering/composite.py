@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -155,9 +156,11 @@ def draw_points(picture: Picture, points: Sequence[NDArray[np.float64]], radius:
     return out
 
 
+@lru_cache(maxsize=4)
 def studio(size: tuple[int, int]) -> Picture:
-    """A plain background (h, w, 3) that is lighter in the middle."""
+    """A plain background (h, w, 3) that is lighter in the middle; kept, so not to be written to."""
     x, y = np.meshgrid(np.linspace(-1, 1, size[0]), np.linspace(-1, 1, size[1]))
     light = 1 - 0.32 * np.clip(x * x * 0.55 + (y + 0.15) ** 2 * 0.7, 0, 1.6)
     shade: Picture = np.clip(light[..., None] * np.array([206, 210, 216]), 0, 255).astype(np.uint8)
+    shade.setflags(write=False)
     return shade

@@ -105,25 +105,28 @@ class Renderer:
         key_now = self.key if self.key is not None else key_direction(self.look, camera, self.up)
         rgba = np.zeros((self.size[1], self.size[0], 4), np.uint8)
         depth = np.full((self.size[1], self.size[0]), np.inf, np.float32)
-        rows = max(1, _BAND // (self.size[0] * self.samples**2))
-        top, bottom = self._span(v, camera)
-        for first in range(top, bottom, rows):
+        left, top, right, bottom = self._span(v, camera)
+        rows = max(1, _BAND // (max(1, right - left) * self.samples**2))
+        for first in range(top, bottom if right > left else top, rows):
             last = min(first + rows, bottom)
-            band = Camera(camera.K - np.array([[0, 0, 0], [0, 0, first], [0, 0, 0.0]]), camera.R, camera.T)
-            seen = rasterise(v, self.faces, band, (self.size[0], last - first), self.samples)
+            band = Camera(camera.K - np.array([[0, 0, left], [0, 0, first], [0, 0, 0.0]]), camera.R, camera.T)
+            seen = rasterise(v, self.faces, band, (right - left, last - first), self.samples)
             shade(
                 seen.depth, seen.face, seen.weights, self.samples, self.faces, v, normals, albedo, lit, 1.0 - hidden,
                 camera.centre, key_now, np.array(self.look.key_light), self.look.gloss,
-                rgba[first:last], depth[first:last],
+                rgba[first:last, left:right], depth[first:last, left:right],
             )  # fmt: skip
         return Rendering(rgba, depth)
 
-    def _span(self, vertices: NDArray[np.float64], camera: Camera) -> tuple[int, int]:
-        """First row and last row + 1 that the mesh may reach."""
+    def _span(self, vertices: NDArray[np.float64], camera: Camera) -> tuple[int, int, int, int]:
+        """First column and row, last column + 1 and row + 1 that the mesh may reach."""
+        width, height = self.size
         if (camera.depth(vertices) <= 0).any():
-            return 0, self.size[1]
-        rows = camera.project(vertices)[:, 1]
-        return max(0, int(np.floor(rows.min()))), min(self.size[1], int(np.ceil(rows.max())) + 2)
+            return 0, 0, width, height
+        pixels = camera.project(vertices)
+        left, top = np.maximum(np.floor(pixels.min(axis=0)), 0)
+        right, bottom = np.minimum(np.ceil(pixels.max(axis=0)) + 2, self.size)
+        return int(left), int(top), int(right), int(bottom)
 
     def _vertex_light(
         self, vertices: NDArray[np.float64], normals: NDArray[np.float64], covered: NDArray[np.float64], camera: Camera

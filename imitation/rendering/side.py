@@ -143,7 +143,10 @@ def grid(
     parts = np.stack([axes[0] @ toward, axes[1] @ toward, plane.normal @ toward])
     starts = np.array([axes[0] @ camera.centre, axes[1] @ camera.centre])
     _lines(parts, starts, axes @ below, offset, step, reach, strength)
-    drawn: Picture = np.rint(picture + 0.8 * strength[..., None] * (_FLOOR - picture)).astype(np.uint8)
+    drawn: Picture = picture.copy()
+    there = strength > 0
+    under = picture[there]
+    drawn[there] = np.rint(under + 0.8 * strength[there][:, None] * (_FLOOR - under)).astype(np.uint8)
     return drawn
 
 

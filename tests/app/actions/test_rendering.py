@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import shutil
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import attrs
 import numpy as np
 import pytest
 
-from app.actions.compositing import Standing
+from app.actions.compositing import MOST_WORKERS, Standing, in_order
 from app.actions.films import COMPARISONS, render_film
 from app.actions.previewing import Previewer, chequered, lacking, within_reach, without_background
 from app.actions.rendering import FilmOrder, computed, write_comparison, write_film, write_motion
@@ -49,6 +51,24 @@ def test_a_preview_is_the_frame_of_the_film(
     write_film(solved, order, tmp_path / "film.mp4", silent)
     assert len(written) == len(FRAMES)
     np.testing.assert_array_equal(Previewer().picture(solved, order, 5), written[1])
+
+
+def test_frames_are_made_beside_each_other_and_come_in_order() -> None:
+    """What is quick waits for what is slow before it, and no more is taken than is worked on."""
+    taken: list[int] = []
+
+    def given() -> Iterator[int]:
+        for number in range(40):
+            taken.append(number)
+            yield number
+
+    def make(number: int) -> int:
+        time.sleep(0.01 if number % 2 else 0.0)
+        return number * number
+
+    for number, made in enumerate(in_order(make, given())):
+        assert made == number * number
+        assert len(taken) <= number + 2 + MOST_WORKERS
 
 
 def test_light_and_blur_change_the_preview(solved: Session) -> None:

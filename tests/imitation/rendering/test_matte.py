@@ -49,6 +49,21 @@ def test_shadow_is_black_and_covers_nothing() -> None:
     assert sheet.cover[24, 30] == 1
 
 
+def test_only_what_is_touched_is_worked_on_and_its_edge_is_the_same() -> None:
+    """A disc that a wall hides by half, far from the rim of a large picture or cut by it: the same pixels."""
+    wall = np.where(np.arange(64)[None] < 22, 1.0, 9.0) * np.ones((48, 1))
+    near = flattened([Layer(disc(4.0, 24, (200, 60, 30)))], (48, 64), background=wall, soft=True)
+    wide = Rendering(np.zeros((200, 300, 4), np.uint8), np.full((200, 300), np.inf, np.float32))
+    wide.rgba[80:128, 100:164], wide.depth[80:128, 100:164] = (
+        disc(4.0, 24, (200, 60, 30)).rgba, disc(4.0, 24, (0, 0, 0)).depth,
+    )  # fmt: skip
+    behind = np.where(np.arange(300)[None] < 122, 1.0, 9.0) * np.ones((200, 1))
+    far = flattened([Layer(wide)], (200, 300), background=behind, soft=True)
+    np.testing.assert_array_equal(far.alpha[80:128, 100:164], near.alpha)
+    np.testing.assert_array_equal(far.light[80:128, 100:164], near.light)
+    assert far.alpha.sum() == near.alpha.sum()
+
+
 def test_nothing_leaves_the_frame_alone() -> None:
     """Without layers the sheet is clear."""
     frame = np.random.default_rng(1).integers(0, 256, (5, 7, 3), dtype=np.uint8)
