@@ -74,12 +74,18 @@ class Dispatch(QObject):
             "measure_background": partial(measure, project),
             "render": self._render,
             **{page: partial(shell.show_workspace, page) for page in shell.pages.names},
+            "inspector": self._fold,
             "history": lambda: shell.side.ask_for("history"),
             "log": lambda: shell.side.ask_for("log"),
             "light": self.switch_look,
             "keys": self._keys,
             "settings": self._settings,
         }
+
+    def _fold(self) -> None:
+        aside = self.shell.in_sight().aside
+        if aside is not None and not self.shell.pages.welcoming:
+            aside.toggle()
 
     def _render(self) -> None:
         from app.window.render import open_render

@@ -79,6 +79,8 @@ NAMES = {
     "gizmo_rotate": "rotate-3d-variant",
     "gizmo_scale": "arrow-expand-all",
     "split": "view-split-vertical",
+    "fold_away": "chevron-right",
+    "unfold": "chevron-left",
     "before": "select-compare",
     "compare": "compare-horizontal",
     "heat": "thermometer",

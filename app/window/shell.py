@@ -41,7 +41,7 @@ class Shell(QMainWindow, NamedPages):
         self.opened: Opened | None = None
         self.setWindowTitle("Motionwright")
         self.setWindowIcon(icons.application_icon())
-        self.setMinimumSize(1180, 720)
+        self.setMinimumSize(1000, 640)
         self.resize(1440, 900)
         self.setAcceptDrops(True)
         self.calls = BackgroundCalls(self)
@@ -199,9 +199,11 @@ class Shell(QMainWindow, NamedPages):
         self.split.fit(self.timeline.wanted_height())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Fit the lanes to the new height."""
+        """Fit the lanes to the new height, and the columns that fold to the new width."""
         super().resizeEvent(event)
         self._fit_lanes()
+        for page in self.pages.workspaces.values():
+            page.fit(self.width())
 
     def _show_frame(self, frame: int) -> None:
         self.timeline.show_frame(frame)

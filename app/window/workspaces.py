@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.model.document import Document
 from app.window.controls import ErrorBar
+from app.window.fold_away import FoldAway
 from app.window.frames import FrameLoader
 from app.window.project import Project
 from app.window.timeline import Lane
@@ -26,6 +27,7 @@ class Workspace(QWidget):
     ----------
     own_timeline : whether it brings a timeline of its own, so that the clip's is not shown beside it.
     errors : the bar in which its errors are told.
+    aside : the column that folds away, where it has one.
     """
 
     hint = Signal(str)
@@ -34,6 +36,7 @@ class Workspace(QWidget):
     wanted = Signal(str)
     own_timeline = False
     errors: ErrorBar
+    aside: FoldAway | None = None
 
     def attach(self, project: Project, loader: FrameLoader | None) -> None:
         """Take another project."""
@@ -46,6 +49,11 @@ class Workspace(QWidget):
 
     def close_view(self) -> None:
         """End every thread and render window; the workspace cannot be shown again."""
+
+    def fit(self, window_width: int) -> None:
+        """Fit into a window of another width."""
+        if self.aside is not None:
+            self.aside.fit(window_width)
 
     def leave(self) -> None:
         """Another workspace comes into sight: stop what only makes sense when seen."""

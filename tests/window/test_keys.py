@@ -148,3 +148,15 @@ def test_damaged_or_foreign_settings_do_no_harm(qapp: QApplication) -> None:
     settings.settings().setValue("keys", "[1, {")
     key_map().load()
     assert not keys.own_keys()
+
+
+def test_two_views_have_a_key_of_their_own(shell: Shell) -> None:
+    """D shows camera and side at once, and is said where one looks for it."""
+    QTest.keyClick(shell, Qt.Key.Key_F2)
+    button = shell.character.mesh.bar.split_button
+    assert button.toolTip().endswith("(D)")
+    wait_for(lambda: shell.character.mesh.viewport is not None)
+    QTest.keyClick(shell, Qt.Key.Key_D)
+    assert button.isChecked()
+    QTest.keyClick(shell, Qt.Key.Key_D)
+    assert not button.isChecked()

@@ -228,7 +228,7 @@ def test_the_sheet_of_keys_shows(shell: Shell) -> None:
     assert shell.findChild(KeySheet) is None
 
 
-@pytest.mark.parametrize("size", [(1180, 720), (1440, 900), (1920, 1080)])
+@pytest.mark.parametrize("size", [(1024, 700), (1180, 720), (1440, 900), (1920, 1080)])
 @pytest.mark.parametrize("workspace", ["video", "character", "performance"])
 def test_nothing_is_clipped(shell: Shell, size: tuple[int, int], workspace: str) -> None:
     """At three sizes no inspector is wider than its column and no button or label cuts its text."""

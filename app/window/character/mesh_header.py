@@ -43,7 +43,7 @@ class MeshHeader(QWidget):
             self.looks.addButton(each)
             self.look_buttons[name] = each
             row.addWidget(each)
-        self.split_button = self._small("split", "Camera and side at once", self.parted, "X")
+        self.split_button = self._small("split", "Camera and side at once", self.parted, "split")
         self.before_button = self._small("before", "Before the edits", self.before, "before_after")
         self.ghost_button = self._small("ghosts", "Ghosts of neighbouring frames", self.ghosted, "ghosts")
         self.compare_button = icon_button("compare", "Compare with the paper's other ways", self._show_compare)

@@ -34,6 +34,7 @@ from app.window.character.track_view import TrackView
 from app.window.character.trails import filmed_trails, trails
 from app.window.character.warning_line import WarningLine
 from app.window.controls import Panel
+from app.window.fold_away import FoldAway
 from app.window.frames import FrameLoader
 from app.window.lanes_of import CHARACTER_LEGEND, character_lanes
 from app.window.project import Project
@@ -77,7 +78,8 @@ class CharacterWorkspace(Workspace):
 
     def _lay_out(self) -> None:
         side = Panel()
-        side.setFixedWidth(304)
+        self.aside = FoldAway("character", "Character, vertex, edits", 304)
+        self.aside.column.addWidget(side)
         side.column.addWidget(self.inspector, 1)
         side.column.addWidget(self.warnings)
         self.inspector.rows.setContentsMargins(12, 12, 12, 12)
@@ -91,9 +93,9 @@ class CharacterWorkspace(Workspace):
         splitter.setSizes([440, 660])
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
+        row.setSpacing(0)
         row.addWidget(splitter, 1)
-        row.addWidget(side)
+        row.addWidget(self.aside)
 
     # the project -------------------------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QSizePolicy, QSplitter, QVBoxLayout, QWidget
 from app.model.document import Document
 from app.window.background_call import BackgroundCalls
 from app.window.controls import Panel
+from app.window.fold_away import FoldAway
 from app.window.frames import FrameLoader
 from app.window.performance.carried import Carried
 from app.window.performance.composed_panel import ComposedPanel
@@ -80,7 +81,10 @@ class PerformanceWorkspace(Workspace):
         base.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         column.addWidget(self.library, 1)
         column.addWidget(base)
-        self.across = _splitter(Qt.Orientation.Horizontal, (left, self.graph, self.side), (0, 1, 0))
+        self.aside = FoldAway("performance", "Preview")
+        self.aside.column.addWidget(self.side)
+        self.strip.matrix_wanted.connect(self.aside.unfold)
+        self.across = _splitter(Qt.Orientation.Horizontal, (left, self.graph, self.aside), (0, 1, 0))
         self.across.setSizes([280, 690, 430])
         self.down = _splitter(Qt.Orientation.Vertical, (self.across, self.composed, self.strip), (1, 0, 0))
         whole = QVBoxLayout(self)

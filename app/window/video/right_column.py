@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy
 
 from app.window.controls import Panel, button
+from app.window.fold_away import FoldAway
 from app.window.video.inspector import TrackInspector
 from app.window.video.scene_panel import ScenePanel
 from app.window.video.steps import StepList
@@ -12,15 +13,11 @@ from app.window.video.steps import StepList
 WIDTH = 304
 
 
-class RightColumn(QWidget):
+class RightColumn(FoldAway):
     """Point, or ground and scale while that tool is in use; below what the project needs."""
 
     def __init__(self) -> None:
-        super().__init__()
-        self.setFixedWidth(WIDTH)
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(8)
+        super().__init__("video", "Point, and what this project needs", WIDTH)
         self.track_panel = Panel("Point")
         self.inspector = TrackInspector()
         self.track_panel.column.addWidget(self.inspector, 1)
@@ -41,12 +38,14 @@ class RightColumn(QWidget):
         self.steps_panel.column.setContentsMargins(1, 1, 1, 1)
         self.steps.layout().setContentsMargins(12, 0, 12, 12)
         self.steps_panel.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
-        layout.addWidget(self.track_panel, 1)
-        layout.addWidget(self.scene_panel, 1)
-        layout.addWidget(self.steps_panel)
+        self.column.addWidget(self.track_panel, 1)
+        self.column.addWidget(self.scene_panel, 1)
+        self.column.addWidget(self.steps_panel)
 
     def show_scene(self, scene: bool) -> None:
         """Show ground and scale instead of the point, or the point again."""
+        if scene:
+            self.unfold()
         self.scene_panel.setVisible(scene)
         self.track_panel.setVisible(not scene)
 

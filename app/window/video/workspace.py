@@ -62,13 +62,14 @@ class VideoWorkspace(Workspace):
         self.snapping = ContactSnapping(self.background)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(8)
+        row.setSpacing(0)
         self.strip = ToolStrip()
         self.strip.chosen.connect(self._choose_tool)
         self.tool_buttons = self.strip.buttons
         row.addWidget(self.strip)
+        row.addSpacing(8)
         row.addWidget(self._middle(), 1)
-        self.right = self._right()
+        self.right = self.aside = self._right()
         row.addWidget(self.right)
         self._choose_tool("select")
 
@@ -367,7 +368,9 @@ class VideoWorkspace(Workspace):
                 return False
             self._choose_tool("select")
         elif self.project is not None and self.inspector.command(name):
-            pass
+            if name == "rename_point" and self.right.folded:
+                self.right.unfold()
+                self.inspector.command(name)
         elif name in (handlers := self._handlers()):
             handlers[name]()
         else:
