@@ -12,8 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from imitation.cameras.path import CameraPath
 from imitation.depth.colours import choose_depth, gains, gather
 from imitation.depth.depthmap import DepthMap, resized, scaled_camera
-from imitation.depth.pictures import Pictures
+from imitation.depth.pictures import GROWTH, Pictures
 from imitation.depth.projection import consensus, inverse_of, projected_inverse
+from imitation.depth.rim import between_parts, depth_along
+from imitation.depth.sharpness import LEAST, blurred_alike, sharp_first, speeds
 from imitation.errors import InputError
 from imitation.geometry.projection import Array, Camera
 
@@ -81,6 +83,7 @@ class Background:
         self._last: tuple[DepthMap, ...] = ()  # depths asked for last, of no key frame: their plates ask again
         self._inverse: dict[tuple[int, int, tuple[int, int]], NDArray[np.float32]] = {}
         middle = float(np.nanmedian(self.maps[len(self.maps) // 2].depth))
+        self._speed = speeds(cameras, range(len(cameras)), self.pictures.size, middle)
         self.tolerance = 1.5 * self.maps[0].tolerance / middle**2
         """Difference of inverse depths that counts as the same surface."""
 
@@ -109,22 +112,28 @@ class Background:
 
         own = self.depth(frame)
         picture = self.pictures.colour(frame)
-        hole = self.pictures.hidden(frame) > 0
         with np.errstate(divide="ignore"):
             inverse = np.nan_to_num(1 / own.depth, nan=0.0).astype(np.float32)
+        hole, inverse = self._hole(frame, picture, inverse)
         wanted = hole | (inverse <= 0)
         donors = self._donors(frame)
         stack, hidden, poses = self._stack(donors)
         scale = gains(picture, hole, inverse, self.camera(frame), stack, hidden, poses)
         rows, columns = np.nonzero(wanted)
         found = self._behind(frame, wanted, stack, hidden, poses, scale)[rows, columns]
-        colour, seen = gather(rows, columns, found, self.camera(frame), stack, hidden, poses, scale, NEAREST)
+
+        def coloured(rows: NDArray[np.int64], columns: NDArray[np.int64], at: NDArray[np.float32]) -> Any:
+            return gather(rows, columns, at, self.camera(frame), stack, hidden, poses, scale, NEAREST)
+
+        colour, seen = coloured(rows, columns, found)
         inverse[rows, columns] = found
         fill = picture.astype(np.float32)
         known = ~wanted
         known[rows[seen > 0], columns[seen > 0]] = True
         painted = hole[rows, columns] & (seen > 0)
         fill[rows[painted], columns[painted]] = colour[painted]
+        if self._speed[frame] >= LEAST * max(self.pictures.size) / 960:
+            fill = blurred_alike(picture, fill, hole, known, inverse, self.pictures.cameras, frame, coloured)
         filled = np.zeros_like(hole)
         filled[rows[painted], columns[painted]] = True
         invented = hole & ~filled
@@ -248,17 +257,26 @@ class Background:
         return sorted(self.maps, key=lambda each: (abs(each.frame - frame), each.frame))[:count]
 
     def _donors(self, frame: int) -> list[int]:
-        """Frames to take colours from: the near ones, and some over the whole clip; near ones first."""
+        """Frames to take colours from: the near ones, and some over the whole clip; near and sharp ones first."""
         others = [t for t in range(len(self.pictures)) if t != frame]
         others.sort(key=lambda t: (abs(t - frame), t))
         near, rest = others[: DONORS // 2], others[DONORS // 2 :]
         step = max(1, -(-len(rest) // (DONORS - len(near)))) if rest else 1
-        return near + rest[::step]
+        chosen, longest = near + rest[::step], max(self.pictures.size)
+        return sharp_first(chosen, frame, self._speed[chosen], float(self._speed[frame]), longest)
 
     def _stack(self, donors: Sequence[int]) -> tuple[NDArray[np.uint8], NDArray[np.uint8], list[Camera]]:
         stack = np.stack([self.pictures.colour(t) for t in donors])
         hidden = np.stack([self.pictures.hidden(t) for t in donors])
         return stack, hidden, [self.camera(t) for t in donors]
+
+    def _hole(
+        self, frame: int, picture: NDArray[np.uint8], inverse: NDArray[np.float32]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
+        """What is to be filled (h, w), less what stands before the subject and parts its mask; and inverse depth."""
+        mask, hidden = self.pictures.mask(frame), self.pictures.hidden(frame)
+        spared = between_parts(picture, mask, hidden, GROWTH * max(self.pictures.size))
+        return (hidden > 0) & ~spared, depth_along(inverse, picture, (hidden > 0) & (mask == 0), spared)
 
     def _behind(
         self,
