@@ -64,6 +64,15 @@ def with_media_at(document: Document, copies: Copies) -> Document:
     return _each(document, lambda media: copies.get(media, media))
 
 
+def linked_from(document: Document, folder: ProjectFolder) -> Document:
+    """Give the document with the media of a project's folder as files outside, for a copy that lies elsewhere."""
+
+    def link(media: MediaRef) -> MediaRef:
+        return media if media.linked else attrs.evolve(media, path=str(folder.path.resolve() / media.path), linked=True)
+
+    return _each(document, link)
+
+
 def use_copies(document: Document, copies: Copies) -> Edit:
     """Let the project use the copies of its media."""
     return Edit(with_media_at(document, copies), "Copy media into the project")

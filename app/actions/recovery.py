@@ -7,12 +7,13 @@ import shutil
 import time
 from pathlib import Path
 
+from app.actions.collecting import linked_from
 from app.actions.places import unsaved_folder
 from app.actions.session import Session
 from app.model.document import Document
 from app.storage.folder import ProjectFolder
 from app.storage.lock import in_use
-from app.storage.recovery import UnsavedWork, set_aside, unsaved_work
+from app.storage.recovery import UnsavedWork, readable, set_aside, unsaved_work
 from imitation.errors import InputError
 
 ABANDONED = 24 * 3600.0
@@ -60,6 +61,23 @@ def take_up(work: UnsavedWork) -> Session:
     saved = folder.load() if folder.file.is_file() else Document()
     session = Session(saved, folder, titled=False)
     recover(session, work)
+    return session
+
+
+def beside_damaged(path: Path) -> UnsavedWork | None:
+    """Give the newest autosave in the folder of a project that cannot be opened, None where none can be read."""
+    try:
+        works = readable(ProjectFolder.find(path))
+    except (InputError, OSError):
+        return None
+    return works[0] if works else None
+
+
+def open_copy(work: UnsavedWork) -> Session:
+    """Open an autosave as a project without a place, its media where they are; the damaged project stays as it is."""
+    document = linked_from(work.document, ProjectFolder(work.file.parent))
+    session = Session.new(name=document.name)
+    session.recover(document)
     return session
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Iterable
 from datetime import datetime
 from pathlib import Path
 
@@ -52,10 +53,23 @@ def set_aside(folder: ProjectFolder) -> None:
 
 def unsaved_work(folder: ProjectFolder) -> tuple[UnsavedWork, ...]:
     """Give what may be recovered in a project's folder, the newest first; damaged files are left out."""
-    found = [_read(folder, file) for file in folder.path.glob(PATTERN)]
+    files = [*folder.path.glob(PATTERN)]
     if folder.recoverable() is not None:
-        found.append(_read(folder, folder.autosave_file))
-    return tuple(sorted((work for work in found if work is not None), key=lambda work: work.when, reverse=True))
+        files.append(folder.autosave_file)
+    return _newest_first(folder, files)
+
+
+def readable(folder: ProjectFolder) -> tuple[UnsavedWork, ...]:
+    """Give every autosave in a project's folder that can be read, the newest first, though the project be newer.
+
+    For a project whose own file cannot be read: any of them is better than nothing.
+    """
+    return _newest_first(folder, (*folder.path.glob(PATTERN), folder.autosave_file))
+
+
+def _newest_first(folder: ProjectFolder, files: Iterable[Path]) -> tuple[UnsavedWork, ...]:
+    found = [work for file in files if (work := _read(folder, file)) is not None]
+    return tuple(sorted(found, key=lambda work: work.when, reverse=True))
 
 
 def _read(folder: ProjectFolder, file: Path) -> UnsavedWork | None:

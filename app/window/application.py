@@ -85,8 +85,8 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
         if geometry is not None:
             shell.restoreGeometry(geometry)
         shell.show()
-    if refused:
-        shell.tell(refused)
+    if refused is not None and path is not None:
+        shell.care.refuse(path, refused)
     elif path is not None and not session.titled:
         shell.files.take(path)
     shell.care.offer_never_saved()
@@ -114,23 +114,23 @@ def _need_a_screen() -> None:
         )
 
 
-def _first(path: Path | None, sample: bool) -> tuple[Session, str]:
+def _first(path: Path | None, sample: bool) -> tuple[Session, Exception | None]:
     """The project to begin with, and why the one that was asked for cannot be opened."""
     from app.actions.session import Session
 
     if path is None and sample:
         from app.window.sample import sample_session
 
-        return sample_session(), ""
+        return sample_session(), None
     if path is None:
-        return Session.new(), ""
+        return Session.new(), None
     from app.actions.kinds import kind_of
 
     try:
         known = kind_of(path)
-        return (Session.new() if known not in ("project", "") else Session.open(path)), ""
+        return (Session.new() if known not in ("project", "") else Session.open(path)), None
     except (InputError, OSError) as error:
-        return Session.new(), str(error)
+        return Session.new(), error
 
 
 def _after(call: Callable[[], object]) -> None:

@@ -38,6 +38,15 @@ def measuring(project: Project) -> Job | None:
     return next((job for job in project.progress if any(each.key == key for each in job.targets)), None)
 
 
+def _under_way(project: Project) -> float | None:
+    """The share that is done where something else has it measured, such as a film that needs it; None where nothing."""
+    if not project.progress:
+        return None
+    depth = project.session.stages.depth
+    states = [project.state(each) for each in depth.closure() if each.name.split("/")[0] == depth.name]
+    return states.count("fresh") / len(states) if "running" in states else None
+
+
 def background_state(project: Project) -> BackgroundState:
     """How it stands."""
     stages = project.session.stages
@@ -53,8 +62,10 @@ def background_state(project: Project) -> BackgroundState:
             offer = document.world.ground == "local" and any(track.contacts for track in document.tracks)
             return BackgroundState("done", count, f"Measured: {count}.", "contacts" if offer else "")
         return BackgroundState("stale", "the ground is missing", "The ground has to be laid again.")
-    if state == "running":
-        return BackgroundState("running", "being measured", f"{LABEL}.", "")
+    share = _under_way(project)
+    if share is not None:
+        text = f"{100 * share:.0f} %"
+        return BackgroundState("running", f"being measured, {text}", f"{LABEL}: {text}.", "")
     reason = why_unmeasured(project)
     if reason:
         return BackgroundState("failed", reason, reason)

@@ -16,6 +16,7 @@ from app.model.edits import scene
 from app.window import files, settings
 from app.window.notices import Notices
 from app.window.project import Project
+from app.window.work import details
 from imitation.errors import InputError
 
 if TYPE_CHECKING:
@@ -159,6 +160,26 @@ class Care(QObject):
             ("Keep it", lambda: self._ask_about(work)),
             ("Throw away for good", lambda: self._guard(lambda: recovery.throw_away(work))),
         )
+
+    def refuse(self, path: Path, error: Exception) -> None:
+        """Say why a project cannot be opened; where an autosave lies beside what is damaged, offer that."""
+        work = recovery.beside_damaged(path)
+        if work is None:
+            self.shell.tell(str(error), details(error))
+            return
+        self.shell.side.log.add(str(error), details(error))
+        held = recovery.what_it_holds(work.document)
+        self.notices.ask(
+            "damaged",
+            f"{error} An autosave of {when_it_was(work)} lies beside it: {held}.",
+            ("Open the autosave as a copy", lambda: self._open_copy(work)),
+            ("Later", lambda: None),
+            level="error",
+        )
+
+    def _open_copy(self, work: UnsavedWork) -> None:
+        if self.shell.files.may_leave():
+            self._guard(lambda: self.shell.open_session(recovery.open_copy(work)))
 
     # media -------------------------------------------------------------------------------------------------------
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -85,8 +86,14 @@ class FileCommands(QObject):
 
     def open(self, path: Path) -> None:
         """Open a project; the window asks about unsaved work of a run that ended badly."""
-        if self.may_leave():
-            self._guard(lambda: self.shell.open_session(Session.open(path)))
+        if not self.may_leave():
+            return
+        try:
+            session = Session.open(path)
+        except (InputError, OSError) as error:
+            self.shell.care.refuse(path, error)
+        else:
+            self._guard(lambda: self.shell.open_session(session))
 
     def sample(self) -> None:
         """Open the sample project, as one that has no place yet."""
@@ -111,30 +118,27 @@ class FileCommands(QObject):
 
     def save_as(self) -> bool:
         """Ask for a place and save there; media stay where they are, and the window asks whether they shall."""
-        project = self.shell.project
-        if project is None or not self._save_elsewhere(project):
-            return False
-        linked = collecting.linked_media(project.document)
-        if linked:
-            first = Path(linked[0].path).name
-            which = f"{first} stays where it is" if len(linked) == 1 else f"{len(linked)} media stay where they are"
-            size = collecting.linked_size(project.document, project.session.folder)
-            self.shell.care.notices.ask(
-                "collect",
-                f"Saved. {which}, and the project remembers where.",
-                (f"Copy into the project ({in_megabytes(size)})", self.collect),
-                ("Leave there", lambda: None),
-                level="note",
-            )
-        return True
+        return self._ask_elsewhere(self._offer_media)
 
     def save_as_whole(self) -> bool:
         """Ask for a place, save there, and copy all media into the project."""
+        return self._ask_elsewhere(self.collect)
+
+    def _offer_media(self) -> None:
         project = self.shell.project
-        if project is None or not self._save_elsewhere(project):
-            return False
-        self.collect()
-        return True
+        linked = collecting.linked_media(project.document) if project is not None else ()
+        if project is None or not linked:
+            return
+        first = Path(linked[0].path).name
+        which = f"{first} stays where it is" if len(linked) == 1 else f"{len(linked)} media stay where they are"
+        size = collecting.linked_size(project.document, project.session.folder)
+        self.shell.care.notices.ask(
+            "collect",
+            f"Saved. {which}, and the project remembers where.",
+            (f"Copy into the project ({in_megabytes(size)})", self.collect),
+            ("Leave there", lambda: None),
+            level="note",
+        )
 
     def collect(self) -> None:
         """Copy media that lie outside into the project, in the background; one entry of the history."""
@@ -153,16 +157,37 @@ class FileCommands(QObject):
         if project.session.titled and self._saved(project, project.session.save):
             self.shell.tell_note("All media lie in the project now.")
 
-    def _save_elsewhere(self, project: Project) -> bool:
-        path = files.ask_place(self.shell, project)
-        if path is None:
+    def _ask_elsewhere(self, then: Callable[[], object]) -> bool:
+        project = self.shell.project
+        path = files.ask_place(self.shell, project) if project is not None else None
+        return project is not None and path is not None and self._save_elsewhere(project, path, then)
+
+    def _save_elsewhere(self, project: Project, path: Path, then: Callable[[], object]) -> bool:
+        """Save at another place, then go on; what is being written would be stopped by it, so that is asked first."""
+        if project is not self.shell.project or self._still_written(project, path, then):
             return False
         if project.document.name == "Untitled":
             project.edit(scene.rename, path.name.removesuffix(SUFFIX))
         if not self._saved(project, lambda: self._save_at(project, path)):
             return False
         settings.remember_project(project.session.folder.path)
+        self.shell.opened.keeper.keep_up()
+        then()
         return True
+
+    def _still_written(self, project: Project, path: Path, then: Callable[[], object]) -> bool:
+        jobs = project.writing()
+        if jobs:
+            go_on = partial(self._save_elsewhere, project, path, then)
+            more = f", and {len(jobs) - 1} more" if len(jobs) > 1 else ""
+            self.shell.care.notices.ask(
+                "writing",
+                f"{jobs[0].label}{more} is still under way; saving at another place now would stop it.",
+                ("Save when it is done", lambda: project.when_written(go_on)),
+                ("Stop it and save now", lambda: project.stop_writing(go_on)),
+                ("Do not save", lambda: None),
+            )
+        return bool(jobs)
 
     def _save_at(self, project: Project, path: Path) -> None:
         """Save at another place; many media are copied there first, with a bar."""

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.actions.session import Session
 from app.model.document import Document
@@ -50,6 +50,7 @@ class Project(QObject):
         self.character_id = session.document.characters[0].id if session.document.characters else ""
         self.vertex = -1
         self.progress: dict[Job, tuple[float, str]] = {}
+        self._afterwards: Callable[[], object] | None = None
         self._ears = Ears(self)
         self._ears.progressed_.connect(self._progressed)
         self._ears.partial_.connect(self._partial)
@@ -204,6 +205,26 @@ class Project(QObject):
         self.work_changed.emit()
         return job
 
+    def writing(self) -> tuple[Job, ...]:
+        """Jobs that write files or read them in: stopped, they begin anew, while results go on where they were."""
+        return tuple(job for job in self.progress if not job.targets)
+
+    def when_written(self, call: Callable[[], object]) -> None:
+        """Call as soon as nothing is written any more; a later wish takes the place of this one."""
+        self._afterwards = call
+        self._written()
+
+    def stop_writing(self, call: Callable[[], object]) -> None:
+        """Cancel what is written, then call."""
+        for job in self.writing():
+            job.cancel()
+        self.when_written(call)
+
+    def _written(self) -> None:
+        if self._afterwards is not None and not self.writing():
+            call, self._afterwards = self._afterwards, None
+            QTimer.singleShot(0, self, call)
+
     def cancel_work(self) -> None:
         """Stop all jobs; what is finished stays."""
         for job in tuple(self.progress):
@@ -229,6 +250,7 @@ class Project(QObject):
             self.failed.emit(sentence, details(job.error))
         self.job_ended.emit(job)
         self.work_changed.emit()
+        self._written()
 
     def close(self) -> None:
         """Stop all work and close the session; whoever asked has saved, or chosen to throw away, what was unsaved."""

@@ -170,6 +170,20 @@ def test_measuring_is_a_step_with_progress_and_cancel(shell: Shell) -> None:
     assert video.background.bar.action.text() == "Measure the background"
 
 
+def test_what_a_film_has_measured_is_under_way_too(shell: Shell) -> None:
+    """Where something else needs the depth and has it measured, the list of steps says so, with its share."""
+    project, video = shell.project, shell.video
+    job = project.start("Rendering", project.session.stages.plate(0))
+    row = next(row for row in video.steps._rows if row[1].text() == "Background")
+    wait_for(lambda: "being measured, " in row[2].text(), 60)
+    assert row[2].text().endswith("%")
+    assert not row[3].isVisible(), "it is not this list that stops a film"
+    job.cancel()
+    wait_for(lambda: not project.progress)
+    settle()
+    assert "being measured" not in row[2].text()
+
+
 def test_what_cannot_be_measured_gives_its_reason_and_what_to_do_instead(
     shell: Shell, monkeypatch: pytest.MonkeyPatch
 ) -> None:

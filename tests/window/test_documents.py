@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import json
 import shutil
+import threading
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -18,9 +20,10 @@ from app.actions.session import Session
 from app.formats import atomic
 from app.model.edits import scene
 from app.storage.migrations import VERSION
-from app.window import settings
+from app.window import application, files, settings
 from app.window.settings_dialog import SettingsDialog
 from app.window.shell import Shell
+from imitation.progress import Progress
 from tests.window.conftest import settle, wait_for
 
 pytestmark = [pytest.mark.window, pytest.mark.slow, pytest.mark.xdist_group("window")]
@@ -225,3 +228,81 @@ def test_settings_are_in_force_and_remembered(shell: Shell) -> None:
     QTest.mouseClick(dialog.close_button, LEFT)
     settle()
     assert shell.findChild(SettingsDialog) is None
+
+
+@pytest.mark.parametrize("at_start", [False, True])
+def test_beside_a_damaged_project_its_autosave_opens_as_a_copy(
+    open_shell: Callable[[Session], Shell], session: Session, monkeypatch: pytest.MonkeyPatch, at_start: bool
+) -> None:
+    """The sentence has a button; the copy has no place, finds its media, and leaves the damaged project as it is."""
+    place = session.folder.path
+    session.apply(scene.rename(session.document, "what I did last"))
+    abandon(session)
+    (place / "project.json").write_text('{"version": 2, "na')
+    if at_start:
+        first, refused = application._first(place, False)
+        shell = open_shell(first)
+        shell.care.refuse(place, refused)
+    else:
+        shell = open_shell(Session.new())
+        shell.files.open(place)
+    notice = shell.care.notices.open["damaged"]
+    assert "what I did last" in notice.sentence.text()
+    click(shell, "damaged", "Open the autosave as a copy")
+    project = shell.project
+    assert project.document.name == "what I did last"
+    assert not project.session.titled
+    assert shell.isWindowModified()
+    assert len(project.document.tracks) == len(session.document.tracks)
+    wait_for(lambda: not shell.video.canvas.picture.isNull())
+    assert project.session.media.locate(project.document.characters[0].mesh).is_file()
+    assert (place / "project.json").read_text() == '{"version": 2, "na'
+    assert (place / "autosave.json").is_file()
+    assert "lost" not in " ".join(shell.care.notices.open)
+    project.cancel_work()
+    wait_for(lambda: not project.progress)
+
+
+def test_a_damaged_project_alone_is_told(open_shell: Callable[[Session], Shell], tmp_path: Path) -> None:
+    """Without an autosave that can be read there is a sentence, and nothing to press."""
+    place = tmp_path / "broken.motionwright"
+    place.mkdir()
+    (place / "project.json").write_text("{")
+    (place / "autosave.json").write_text("{")
+    shell = open_shell(Session.new())
+    shell.files.open(place)
+    assert shell.pages.errors.sentence.text()
+    assert not shell.care.notices.open
+
+
+def test_saving_elsewhere_does_not_stop_what_is_written(
+    shell: Shell, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While a file is being written it is asked what shall be done first; done, or stopped, the project is saved."""
+    here = shell.project.session.folder.path
+    for number, answer, ended in ((1, "Save when it is done", "done"), (2, "Stop it and save now", "cancelled")):
+        target = tmp_path / f"elsewhere {number}.motionwright"
+        monkeypatch.setattr(files, "ask_place", lambda *_, target=target: target)
+        go_on = threading.Event()
+
+        def write(progress: Progress, go_on: threading.Event = go_on) -> str:
+            while not go_on.is_set():
+                progress(0.5)
+                time.sleep(0.01)
+            return "film.mp4"
+
+        job = shell.project.call("Rendering film.mp4", write)
+        QTest.keyClick(shell, Qt.Key.Key_S, CONTROL | Qt.KeyboardModifier.ShiftModifier)
+        assert "Rendering film.mp4" in shell.care.notices.open["writing"].sentence.text()
+        assert shell.project.session.folder.path == here
+        assert job.state == "running"
+        click(shell, "writing", answer)
+        settle(100)
+        if answer.startswith("Save when"):
+            assert shell.project.session.folder.path == here
+            go_on.set()
+        wait_for(lambda target=target: shell.project.session.folder.path == target)
+        assert job.state == ended
+        here = target
+    assert json.loads((here / "project.json").read_text())["document"]["name"] == "small"
+    assert not shell.isWindowModified()
