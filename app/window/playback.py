@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from PySide6.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
+
+LEAST = 4
+"""Milliseconds between two looks at the clock at least."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,7 @@ class Playback(QObject):
         self._present = present
         self._timer = QTimer(self)
         self._timer.setTimerType(Qt.TimerType.PreciseTimer)
+        self._timer.setSingleShot(True)
         self._timer.timeout.connect(self._tick)
         self._clock = QElapsedTimer()
         self._course: Course | None = None
@@ -65,7 +70,7 @@ class Playback(QObject):
             start = first
         self._course = Course(start, first, last, fps, speed)
         self._clock.start()
-        self._timer.start(max(int(1000 / (fps * abs(speed)) / 2), 4))
+        self._wait()
         if not was:
             self.playing_changed.emit(True)
 
@@ -76,8 +81,17 @@ class Playback(QObject):
             self._course = None
             self.playing_changed.emit(False)
 
+    def _wait(self) -> None:
+        """Wake when the next frame is due, counted from the start: being late once makes nothing later."""
+        assert self._course is not None
+        step = 1e9 / (self._course.fps * abs(self._course.speed))
+        left = step - self._clock.nsecsElapsed() % step
+        self._timer.start(max(math.ceil(left / 1e6), LEAST))
+
     def _tick(self) -> None:
         if self._course is not None:
-            frame = self._course.frame(self._clock.elapsed() / 1000)
+            frame = self._course.frame(self._clock.nsecsElapsed() / 1e9)
             if frame != self._present():
                 self.due.emit(frame)
+        if self._course is not None:
+            self._wait()
