@@ -43,8 +43,7 @@ def export_performance(
     name = session.document.name.replace("/", "-")
     report = progress or silent
     if chosen == "animation":
-        _write_animation(target, frames, name, report)
-        return chosen, ""
+        return chosen, _write_animation(target, frames, name, report)
     textured = blends = 0
 
     def counted() -> object:
@@ -82,12 +81,14 @@ def _form(target: Path) -> PerformanceForm:
     return "ply"
 
 
-def _write_animation(target: Path, frames: PerformanceFrames, name: str, report: Progress) -> None:
+def _write_animation(target: Path, frames: PerformanceFrames, name: str, report: Progress) -> str:
+    """Write one animated GLB; gives a sentence on what could not be kept."""
     if not frames.moving:
         raise InputError(
             "The frames have faces of their own, which one animated GLB cannot hold: write a folder (--format glb) or "
             "an .npz."
         )
+    textured = frames[0].texture is not None
     first = painted(frames[0])
     vertices = np.empty((len(frames), *first.vertices.shape), np.float32)
     for position in range(len(frames)):
@@ -98,3 +99,4 @@ def _write_animation(target: Path, frames: PerformanceFrames, name: str, report:
     write_sequence(
         target, vertices, first.faces, rate, form="glb", colors=colours, name=name, progress=part(report, 0.5, 1.0)
     )
+    return "One animated GLB holds no pictures here: it has their colours at the vertices." if textured else ""

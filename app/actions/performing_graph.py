@@ -105,6 +105,12 @@ def tried(document: Document, graph: Any, mu: float) -> Tried:
     return Tried(mu, kept, tuple(best.path), tuple(best.keys), float(best.cost), len(best))
 
 
+def found(graph: Any, path: Any) -> Tried:
+    """A path that was found already, to be shown like one that is tried."""
+    kept = np.isfinite(graph.weights)
+    return Tried(float(graph.mu), kept, tuple(path.path), tuple(path.keys), float(path.cost), len(path))
+
+
 def gap_of(error: Any, named: list[MotionName]) -> Gap:
     """Say with names what an ``Unreachable`` says with numbers."""
     edges = tuple(f"{named[a].name} to {named[b].name}" for a, b in error.edges)
