@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from app.window.performance.blocks import (
     place_x,
     repeatable,
 )
-from app.window.performance.composed_paint import steps, tone
+from app.window.performance.composed_paint import advice, steps, told, tone
 from app.window.performance.graph_view import (
     EdgeMark,
     Lens,
@@ -143,11 +144,69 @@ def test_places_among_the_key_motions() -> None:
 
 def test_cuts_say_how_far_they_stand_out() -> None:
     """Their colour and their words."""
-    plain, poor = BLOCKS.joints[1], Joint(3, 60, "cut", 2.0, ("b", "c"), poor=True)
-    assert (tone(plain), tone(poor), tone(BLOCKS.joints[2])) == ("ok", "accent", "accent")
+    plain = BLOCKS.joints[1]
+    assert (tone(plain), tone(BLOCKS.joints[2])) == ("ok", "accent")
     assert tone(Joint(4, 60, "cut", 2.0, ("b", "c"), 3.0, 1.9)) == "warn"
     assert tone(Joint(4, 60, "cut", 2.0, ("b", "c"), 3.0, 1.9, 1.0)) == "ok"
     assert steps(plain) == "12.0 \N{RIGHTWARDS ARROW} 0.9"
+
+
+def test_cuts_say_what_can_be_done() -> None:
+    """Hidden ones nothing; a jump and poses far apart are amber and say what mends them, once it is known."""
+    cut = Joint(3, 60, "cut", 2.0, ("b", "c"), 12.0, 0.9)
+    poor = replace(cut, poor=True)
+    assert (advice(cut), cut.apart) == ("", False)
+    assert (tone(poor), poor.apart) == ("warn", True), "the mean step hides a limb that jumps"
+    assert "far apart" in advice(poor)
+    assert "Nothing nearer leads there" in advice(poor)
+    assert "switch Blend on" in advice(poor)
+    assert not replace(poor, waiting=True).apart, "in-betweens are still being made"
+    bridged = replace(poor, blended=0.8, frames=8)
+    assert (tone(bridged), bridged.apart) == ("ok", False)
+    assert "bridge" in advice(bridged)
+    refused = replace(cut, refused=True, reason="The cut is left as it is: why.")
+    assert (tone(refused), refused.apart) == ("warn", True)
+    assert "Blend" not in advice(refused)
+    assert "put a motion between" in told(refused)
+    seen = replace(cut, after=1.9)
+    assert (tone(seen), seen.apart) == ("warn", False)
+    assert "switch Blend on" in advice(seen)
+
+
+def test_words_of_the_preview_go_on_in_another_line(qapp: object) -> None:
+    """A sentence takes two lines at most, and only the last one is shortened."""
+    from PySide6.QtGui import QFontMetricsF
+
+    from app.window import fonts
+    from app.window.performance.preview_notes import broken
+
+    metrics = QFontMetricsF(fonts.font(fonts.CAPTION))
+    sentence = "part of the body has no counterpart there and lies elsewhere"
+    wide = metrics.horizontalAdvance(sentence)
+    assert broken(sentence, metrics, wide + 1) == [sentence]
+    two = broken(sentence, metrics, 0.6 * wide)
+    assert " ".join(two) == sentence
+    assert len(two) == 2
+    short = broken(sentence, metrics, 0.3 * wide)
+    assert len(short) == 2
+    assert short[1].endswith("\N{HORIZONTAL ELLIPSIS}")
+    assert all(metrics.horizontalAdvance(line) <= 0.3 * wide for line in short)
+
+
+def test_names_and_costs_keep_clear(qapp: object) -> None:
+    """Names stand below their nodes, or beside them where another node is in the way; no plate covers a node."""
+    from app.window.performance import graph_paint
+
+    picture = Picture(marks((0, 0), (0, 1.3), (2, 0)))
+    lens = Lens(60, 60, 60, 200, 100)
+    plates = graph_paint.name_plates(picture, lens)
+    assert plates[1].top() > lens.pixel(0, 1.3)[1], "below"
+    circles = [graph_paint._circle(mark, lens) for mark in picture.nodes]
+    for node, plate in plates.items():
+        assert not any(plate.intersects(circle) for circle in circles)
+        assert not any(plate.intersects(other) for k, other in plates.items() if k != node)
+    small = graph_paint.name_plates(picture, replace(lens, size=16.0), 2)
+    assert list(small) == [2], "where nodes are small only what is chosen or on the path has its name"
 
 
 def test_a_large_graph_is_drawn_in_groups(qapp: object) -> None:
@@ -174,9 +233,14 @@ def test_a_large_graph_is_drawn_in_groups(qapp: object) -> None:
     pixels.fill()
     painter = QPainter(pixels)
     graph_paint.paint_groups(painter, picture.groups, lens)
+    graph_paint.paint_group_names(painter, picture.groups, lens)
     graph_paint.paint_edges(painter, picture, lens, 3)
+    names = graph_paint.name_plates(picture, lens, 3)
+    graph_paint.paint_costs(painter, picture, lens, names)
     for mark in picture.nodes:
-        graph_paint.paint_node(painter, mark, lens, None, chosen=mark.node == 3, hovered=False, focus=True)
+        graph_paint.paint_node(
+            painter, mark, lens, None, chosen=mark.node == 3, hovered=False, focus=True, name=names.get(mark.node)
+        )
     painter.end()
     centres = [places[groups == group].mean(axis=0) for group in range(3)]
     spread = [np.linalg.norm(places[groups == group] - centres[group], axis=1).mean() for group in range(3)]

@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
+from app.actions import performing
+from app.actions.session import Session
 from app.formats import open_video
 from app.formats.tvm import open_mesh_frames
+from app.model.edits import performance as edits
+from app.model.performance import KeyMotion
 from app.window.performance.export_dialog import FORMS, ExportDialog
+from app.window.performance.preview_notes import place_lines
 from app.window.shell import Shell
 from tests.window.conftest import settle, wait_for
 from tests.window.performance_parts import CONTROL, LEFT, PLAIN, drop, label_of, quiet
 from tests.window.performance_parts import composed as composed
 from tests.window.performance_parts import composed_project as composed_project
+from tests.window.small_performance import write_worn_take
 
 pytestmark = [pytest.mark.window, pytest.mark.xdist_group("window")]
 
@@ -158,3 +166,47 @@ def test_nothing_composed_is_said(composed: Shell) -> None:
     assert not dialog.export_button.isEnabled()
     dialog.reject()
     wait_for(lambda: not composed.project.progress)
+
+
+@pytest.mark.slow
+def test_in_betweens_of_worn_pictures_say_how_they_are_coloured(
+    open_shell: Callable[[Session], Shell], tmp_path: Path
+) -> None:
+    """In the preview, in the dialog, and when they are written: pictures stay, in-betweens have colours."""
+    session = Session.new(tmp_path / "worn")
+    for name in ("Walk", "Gym"):
+        performing.add_sequence(session, write_worn_take(tmp_path, name), fps=15.0, up="z", unit=1.0)
+    graph: Any = session.result(session.stages.graph)
+    named = performing.motions(session.document, graph)
+    walk = next(each for each in named if each.name.startswith("Walk"))
+    march = [each for each in named if each.name.startswith("Gym")][-1]
+    session.apply(edits.set_keys(session.document, [KeyMotion(walk.motion), KeyMotion(march.motion)]))
+    session.apply(edits.set_mu(session.document, 50.0))
+    blends: Any = session.result(session.stages.blends)
+    between = [position for blend in blends.blends for position in sorted(blend.shapes)]
+    assert between, "a cut is blended"
+    shell = open_shell(session)
+    QTest.keyClick(shell, Qt.Key.Key_F3)
+    page = shell.performance
+    wait_for(lambda: page.preview.shown >= 0 and not shell.project.progress, 60)
+    for position, worn in ((between[0], False), (0, True)):
+        page.state.show_position(position)
+        wait_for(lambda position=position: page.preview.shown == position)
+        shown = page.preview.frame
+        assert shown.blended != worn
+        assert (shown.picture is not None) == worn
+        lines = place_lines(page.state, shown.sequence, shown.source, shown.blended)
+        assert any("colours at its vertices instead of the picture" in line for line in lines) != worn
+    dialog = ask(shell)
+    choose(dialog, "ply")
+    assert dialog.worn.isVisible()
+    QTest.mouseClick(dialog.blended, LEFT, PLAIN, QPoint(8, dialog.blended.height() // 2))
+    assert not dialog.worn.isVisible()
+    QTest.mouseClick(dialog.blended, LEFT, PLAIN, QPoint(8, dialog.blended.height() // 2))
+    place(dialog, tmp_path / "made")
+    sentence = finished(dialog)
+    assert f"{len(between)} blended frames have colours at their vertices instead of pictures." in sentence
+    with open_mesh_frames(tmp_path / "made") as frames:
+        assert frames[0].texture is not None
+        assert frames[between[0]].texture is None
+        assert frames[between[0]].colours is not None

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QObject, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
@@ -18,7 +18,7 @@ from app.actions.session import Session
 from app.formats.tvm import FrameMesh
 from app.window.performance.player import Dropped, FrameReader, ahead
 from app.window.performance.preview_notes import cut_near
-from app.window.playback import Course
+from app.window.playback import Course, Playback
 from app.window.shell import Shell
 from imitation.errors import InputError
 from tests.window.conftest import drag, settle, wait_for
@@ -55,6 +55,25 @@ def test_it_plays_at_its_own_rate(composed: Shell) -> None:
     counted = preview.dropped
     assert counted.shown + counted.dropped == pytest.approx(places[-1] - places[0], abs=2)
     assert "15 fps" in preview.rate.text()
+
+
+def test_being_late_once_makes_nothing_later(qapp: QApplication) -> None:
+    """Frames are due at whole multiples from the start: after a late one the next comes at its own time."""
+    owner, at = QObject(), {"frame": 0}
+    playback = Playback(owner, lambda: at["frame"])
+    playback.due.connect(lambda frame: at.update(frame=frame))
+    playback.play(0, 500, 10.0)
+
+    class Late:
+        def nsecsElapsed(self) -> int:
+            return 372_000_000
+
+    playback._clock = Late()
+    playback._tick()
+    assert at["frame"] == 3
+    assert playback._timer.interval() == 28
+    playback.stop()
+    assert not playback._timer.isActive()
 
 
 def test_what_is_drawn_is_what_was_composed(composed: Shell) -> None:

@@ -27,6 +27,7 @@ class Fold(QWidget):
         self.head.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self.head.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.caption = label("", "caption")
+        self.head.setMinimumHeight(24)
         PressKeys(self.head)
         row.addWidget(self.head)
         row.addStretch(1)

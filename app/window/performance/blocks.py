@@ -17,6 +17,8 @@ LOW, LOW_COSTS = 48, 30
 """Heights of the two lanes, and where room is scarce."""
 BUTTON = 18.0
 NEAR = 6.0
+STANDS_OUT = 1.2
+"""A step of more than so many times the largest within the motions is seen."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,8 @@ class Block:
 class Joint:
     """A cut. before, after, blended : how far its step stands out as filmed, placed and with in-betweens; None unknown.
 
-    number : among all joints of the performance. frames : how many in-betweens.
+    number : among all joints of the performance. frames : how many in-betweens. poor : over the limit of the graph.
+    refused : in-betweens were tried and would break the body. waiting : whether they hold is not known yet.
     """
 
     number: int
@@ -62,7 +65,21 @@ class Joint:
     frames: int = 0
     hard: bool = False
     poor: bool = False
+    refused: bool = False
+    waiting: bool = False
     reason: str = ""
+
+    @property
+    def apart(self) -> bool:
+        """Whether the poses that meet are far apart and nothing lies between: the mean step may be small, and yet a
+        limb jumps.
+        """
+        return self.refused or (self.poor and self.blended is None and not self.waiting)
+
+    @property
+    def seen(self) -> bool:
+        """Whether the step stands out."""
+        return self.score is not None and self.score > STANDS_OUT
 
     @property
     def score(self) -> float | None:
@@ -153,32 +170,35 @@ def _is_gap(state: PerformanceState, start: int, goal: int) -> bool:
 
 
 def _joints(state: PerformanceState, performance: Any) -> tuple[Joint, ...]:
+    return tuple(joint_of(state, performance, number) for number in range(len(performance.cuts)))
+
+
+def joint_of(state: PerformanceState, performance: Any, number: int) -> Joint:
+    """One joint as far as it is known by now."""
+    cut, choice = performance.cuts[number], state.document.performance
     seams = state.placed.seams if state.placed is not None else ()
-    blends = {blend.cut.position: blend for blend in (state.blends.blends if state.blends is not None else ())}
-    hard = state.hard_cuts()
-    joints = []
-    for number, cut in enumerate(performance.cuts):
-        seam = seams[number] if number < len(seams) else None
-        blend = blends.get(cut.position) if cut.kind == "cut" else None
-        usual = seam.usual if seam is not None and seam.usual > 0 else None
-        mixed = blend is not None and bool(blend.shapes) and not state.before
-        joints.append(
-            Joint(
-                number=number,
-                position=cut.position,
-                kind=cut.kind,
-                cost=float(cut.weight),
-                names=(state.motions[cut.source].name, state.motions[cut.target].name),
-                before=None if seam is None or usual is None else seam.before / usual,
-                after=None if seam is None else seam.score,
-                blended=blend.step_after / usual if mixed and usual is not None else None,
-                frames=len(blend.shapes) if blend is not None else 0,
-                hard=number in hard,
-                poor=bool(cut.source != cut.target and state.graph.poor[cut.source, cut.target]),
-                reason=blend.reason if blend is not None else "",
-            )
-        )
-    return tuple(joints)
+    seam = seams[number] if number < len(seams) else None
+    made = state.blends.blends if state.blends is not None and cut.kind == "cut" else ()
+    blend = next((each for each in made if each.cut.position == cut.position), None)
+    hard = number in state.hard_cuts()
+    usual = seam.usual if seam is not None and seam.usual > 0 else None
+    mixed = blend is not None and bool(blend.shapes) and not state.before
+    return Joint(
+        number=number,
+        position=cut.position,
+        kind=cut.kind,
+        cost=float(cut.weight),
+        names=(state.motions[cut.source].name, state.motions[cut.target].name),
+        before=None if seam is None or usual is None else seam.before / usual,
+        after=None if seam is None else seam.score,
+        blended=blend.step_after / usual if blend is not None and mixed and usual is not None else None,
+        frames=len(blend.shapes) if blend is not None else 0,
+        hard=hard,
+        poor=bool(cut.source != cut.target and state.graph.poor[cut.source, cut.target]),
+        refused=blend is not None and not blend.shapes and bool(blend.reason),
+        waiting=choice.align and choice.blend and state.blends is None and not (hard or state.before),
+        reason=blend.reason if blend is not None else "",
+    )
 
 
 def box(block: Block, axis: Axis) -> tuple[float, float]:

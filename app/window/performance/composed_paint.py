@@ -15,10 +15,9 @@ from app.window.timeline.lanes import RULER
 
 Thumbnail = Callable[[str, int], QImage | None]
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+OTHERWISE = "put a motion between, or take another path"
 LOOPED = 92.0
 """Pixels that the words of the way back to the start take, left of its bar."""
-STANDS_OUT = 1.2
-"""A step of more than so many times the largest within the motions is seen."""
 
 
 def paint_labels(painter: QPainter, width: int, heights: tuple[int, int]) -> None:
@@ -170,9 +169,9 @@ def paint_costs(painter: QPainter, shown: Composed, axis: Axis, top: int, height
         tall = 4 + (height - 18) * min(joint.cost / dear, 1.0) if dear > 0 else 4
         bar = QRectF(x - 4.5, base - tall, 9, tall)
         painter.setPen(QPen(look.colour("text"), 1.6) if joint.number == chosen else Qt.PenStyle.NoPen)
-        painter.setBrush(look.colour(tone(joint), 110 if joint.poor else 255))
+        painter.setBrush(look.colour(tone(joint), 110 if joint.apart else 255))
         painter.drawRoundedRect(bar, 2, 2)
-        if joint.poor:
+        if joint.apart:
             painter.setBrush(QBrush(look.colour(tone(joint)), Qt.BrushStyle.BDiagPattern))
             painter.drawRoundedRect(bar, 2, 2)
         _paint_words(painter, joint, x + 9, edge - 8, top, height)
@@ -202,10 +201,24 @@ def steps(joint: Joint) -> str:
 
 
 def tone(joint: Joint) -> str:
-    """The colour of a cut: amber where its step is seen; those that are over the limit are hatched besides."""
+    """The colour of a cut: amber where something is seen to jump; where it is a limb alone it is hatched besides."""
     if joint.score is None:
         return "accent"
-    return "warn" if joint.score > STANDS_OUT else "ok"
+    return "warn" if joint.seen or joint.apart else "ok"
+
+
+def advice(joint: Joint) -> str:
+    """What can be done about a cut; empty where nothing needs to be."""
+    if joint.apart:
+        only = " Nothing nearer leads there." if joint.poor else ""
+        blend = "" if joint.refused else "switch Blend on, "
+        return f"The two poses are far apart: a limb may jump.{only} To mend it: {blend}{OTHERWISE}."
+    if joint.seen:
+        longer = "blend it longer, " if joint.blended is not None else "switch Blend on, "
+        return f"The step is seen. To mend it: {longer}{OTHERWISE}."
+    if joint.poor and joint.blended is not None:
+        return "The two poses are far apart; the in-betweens bridge them: look whether they please."
+    return ""
 
 
 def told(joint: Joint) -> str:
@@ -222,8 +235,8 @@ def told(joint: Joint) -> str:
         lines.append("It stays a hard cut.")
     if joint.reason:
         lines.append(joint.reason)
-    if joint.poor:
-        lines.append("It is over the limit, and kept because nothing else leads there.")
+    if joint.kind == "cut" and (words := advice(joint)):
+        lines.append(words)
     return "\n".join(lines)
 
 

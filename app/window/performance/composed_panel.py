@@ -19,7 +19,7 @@ from app.window.timeline.axis import LABELS
 from app.window.timeline.lanes import RULER
 from app.window.timeline.transport import Transport
 
-LEGEND = (("not seen", "ok", "bar"), ("step is seen", "warn", "bar"), ("over the limit", "ok", "hatch"))
+LEGEND = (("hidden", "ok", "bar"), ("jump is seen", "warn", "bar"), ("poses far apart", "warn", "hatch"))
 EMPTY = "Double-click motions in the graph, in the order in which they shall be played. Or drag them here."
 GAP_SHARE = 0.5
 
@@ -65,9 +65,9 @@ class ComposedPanel(Panel):
         super().__init__()
         self.state, self.editing = state, editing
         self.transport = Transport()
-        self.transport.legend.show_entries(LEGEND)
-        set_tooltip(self.transport.buttons["previous_mark"], "Previous cut", "previous_mark")
-        set_tooltip(self.transport.buttons["next_mark"], "Next cut", "next_mark")
+        for name, text in (("previous_mark", "Previous cut"), ("next_mark", "Next cut")):
+            set_tooltip(self.transport.buttons[name], text, name)
+            self.transport.buttons[name].setAccessibleName(text)
         self.summary = Elided("", "caption")
         self.summary.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         row = self.transport.layout()
@@ -106,7 +106,7 @@ class ComposedPanel(Panel):
     def _connect(self) -> None:
         view, state = self.view, self.state
         view.sought.connect(state.show_position)
-        view.chosen_key.connect(self._choose_key)
+        view.chosen.connect(self._choose)
         view.chosen_cut.connect(self._choose_cut)
         view.reordered.connect(self.editing.move)
         view.repeated.connect(self.editing.repeat)
@@ -133,6 +133,9 @@ class ComposedPanel(Panel):
         self.view.show_composed(composed(state, GAP_SHARE))
         self.view.show_choice(self.editing.key, state.cut)
         self.options.refresh()
+        self.transport.legend.show_entries(LEGEND if state.frame_count else ())
+        for each in self.transport.buttons.values():
+            each.setEnabled(state.frame_count > 0)
         self.summary.setText(self._words())
         style = f"color: {theme.active().err};" if state.problem and state.gap is None else ""
         if style != self.summary.styleSheet():
@@ -156,8 +159,13 @@ class ComposedPanel(Panel):
     def show_place(self, *_: object) -> None:
         """Move the playhead and the numbers."""
         state = self.state
-        self.view.show_position(state.position)
-        self.transport.show_frame(state.position, state.frame_count, state.fps, state.position / max(state.fps, 1e-9))
+        self.view.show_frame(state.position)
+        if state.frame_count:
+            seconds = state.position / max(state.fps, 1e-9)
+            self.transport.show_frame(state.position, state.frame_count, state.fps, seconds)
+        else:
+            self.transport.number.setText("")
+            self.transport.of.setText("")
 
     def _place(self) -> None:
         """Put what lies over the lanes where it belongs."""
@@ -180,13 +188,10 @@ class ComposedPanel(Panel):
         words = [told(joint) for joint in self.view.shown.joints if joint.number == number]
         self.crossing.emit(number if words else -1, words[0] if words else "", where)
 
-    def _choose_key(self, key: int) -> None:
-        self.editing.choose(key)
-        found = [
-            block for block in self.view.shown.blocks if block.first <= self.state.position < block.first + block.count
-        ]
-        if found and not found[0].gap:
-            self.state.select_node(found[0].node)
+    def _choose(self, index: int) -> None:
+        block = self.view.shown.blocks[index]
+        self.editing.choose(block.key)
+        self.state.select_node(block.node)
 
     def _choose_cut(self, cut: int) -> None:
         self.state.select_cut(cut)

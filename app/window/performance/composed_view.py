@@ -5,20 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QPoint, QSize, Qt, Signal
-from PySide6.QtGui import (
-    QContextMenuEvent,
-    QHelpEvent,
-    QImage,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
-    QPixmap,
-    QResizeEvent,
-    QWheelEvent,
-)
-from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+from PySide6.QtGui import QContextMenuEvent, QImage, QMouseEvent, QPainter, QResizeEvent
 
-from app.window import theme
 from app.window.performance import blocks, composed_paint
 from app.window.performance.blocks import (
     COMPOSED,
@@ -31,7 +19,8 @@ from app.window.performance.blocks import (
     key_place,
     place_x,
 )
-from app.window.timeline.axis import Axis
+from app.window.performance.keyed_view import PLAIN
+from app.window.performance.time_view import TimeView
 from app.window.timeline.lanes import RULER
 from app.window.timeline.paint import paint_playhead, paint_ruler
 
@@ -40,16 +29,15 @@ HAND = Qt.CursorShape.PointingHandCursor
 CURSORS = {"more": HAND, "fewer": HAND, "joint": HAND, "block": HAND}
 
 
-class ComposedView(QWidget):
+class ComposedView(TimeView):
     """Ruler, blocks and costs. Places among the key motions are counted from 0, -1 is none.
 
-    ``chosen_key`` and ``chosen_cut`` say what was clicked, ``reordered`` from where to where, ``repeated`` a place and
-    a step, ``keyed`` asks that the motion of a block, by its number, becomes a key motion. ``crossing`` gives the
-    number of the cut under the mouse and a global place, -1 where there is none.
+    ``chosen`` gives the block, ``chosen_cut`` the cut that was clicked or reached by Up and Down, ``reordered`` from
+    where to where, ``repeated`` a place and a step, ``keyed`` asks that the motion of a block, by its number, becomes a
+    key motion. ``crossing`` gives the number of the cut under the mouse and a global place, -1 where there is none.
     """
 
-    sought = Signal(int)
-    chosen_key = Signal(int)
+    chosen = Signal(int)
     chosen_cut = Signal(int)
     reordered = Signal(int, int)
     repeated = Signal(int, int)
@@ -59,22 +47,20 @@ class ComposedView(QWidget):
     crossing = Signal(int, QPoint)
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__("Composed performance")
         self.shown = Composed()
-        self.axis = Axis(count=2)
-        self.position = 0
+        self.frame = 0
         self.key, self.cut, self.hover = -1, -1, -1
         self.insertion = self.joint = -1
         self.thumbnail: Callable[[str, int], QImage | None] = lambda sequence, frame: None
-        self._still: QPixmap | None = None
         self._pressed: tuple[ComposedHit, float] | None = None
         self._dragging = self._seeking = False
-        self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.heights = (COMPOSED, COSTS)
         self.setFixedHeight(RULER + COMPOSED + COSTS)
-        self.setAccessibleName("Composed performance")
+        self.keys[PLAIN, Qt.Key.Key_Up] = lambda: self._next_block(-1)
+        self.keys[PLAIN, Qt.Key.Key_Down] = lambda: self._next_block(1)
+        for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.keys[PLAIN, key] = self._make_key
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
@@ -97,13 +83,6 @@ class ComposedView(QWidget):
             self.axis = self.axis.sized(self.width(), shown.count + 1)
             self.refresh()
 
-    def show_position(self, position: int) -> None:
-        """Move the playhead; the lanes are not drawn again unless they have to scroll."""
-        if position != self.position:
-            self.position = position
-            self._set_axis(self.axis.showing(position))
-            self.update()
-
     def show_choice(self, key: int, cut: int) -> None:
         """Mark the chosen key motion and cut."""
         if (key, cut) != (self.key, self.cut):
@@ -118,22 +97,8 @@ class ComposedView(QWidget):
 
     def refresh(self) -> None:
         """Draw the lanes anew at the next paint."""
-        self._still = None
-        self.update()
+        super().refresh()
         self.moved.emit()
-
-    def _set_axis(self, axis: Axis) -> None:
-        if axis != self.axis:
-            self.axis = axis
-            self.refresh()
-
-    def show_all(self) -> None:
-        """Show the whole performance."""
-        self._set_axis(self.axis.whole())
-
-    def zoom(self, factor: float) -> None:
-        """Zoom in time round the playhead."""
-        self._set_axis(self.axis.showing(self.position).zoomed(factor, self.axis.x(self.position)))
 
     def place_at(self, where: QPoint) -> int:
         """Before which key motion a global place lies; -1 where it is not over the blocks."""
@@ -148,38 +113,20 @@ class ComposedView(QWidget):
         self.show_insertion(-1)
         return was
 
-    def changeEvent(self, event: QEvent) -> None:
-        """Take another look."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.StyleChange:
-            self.refresh()
-
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Fit the axis to the width."""
         self.axis = self.axis.sized(self.width(), self.shown.count + 1)
-        self.refresh()
+        super().resizeEvent(event)
 
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the kept picture of the lanes and the playhead over it."""
-        ratio = self.devicePixelRatioF()
-        if self._still is None or self._still.size() != self.size() * ratio:
-            self._still = QPixmap(self.size() * ratio)
-            self._still.setDevicePixelRatio(ratio)
-            self._paint_still()
-        painter = QPainter(self)
-        painter.drawPixmap(0, 0, self._still)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    def paint_over(self, painter: QPainter) -> None:
+        """Draw where something would be dropped, and the playhead."""
         if self.insertion >= 0:
             composed_paint.paint_insertion(painter, place_x(self.shown, self.axis, self.insertion), self.heights[0])
         if self.shown.count > 1 and not any(block.gap for block in self.shown.blocks):
-            paint_playhead(painter, self.axis, self.position, self.height())
-        painter.end()
+            paint_playhead(painter, self.axis, self.frame, self.height())
 
-    def _paint_still(self) -> None:
-        assert self._still is not None
-        self._still.fill(theme.active().colour("panel"))
-        painter = QPainter(self._still)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    def paint_still(self, painter: QPainter) -> None:
+        """Draw ruler, blocks and costs."""
         if self.shown.count:
             paint_ruler(painter, self.axis)
         composed_paint.paint_blocks(
@@ -188,7 +135,35 @@ class ComposedView(QWidget):
         top, height = RULER + self.heights[0], self.heights[1]
         composed_paint.paint_costs(painter, self.shown, self.axis, top, height, chosen=self.cut)
         composed_paint.paint_labels(painter, self.width(), self.heights)
-        painter.end()
+
+    # keys --------------------------------------------------------------------------------------------------------
+
+    def _block_here(self) -> int:
+        """The block that the keys mean: under the playhead; without a path that of the chosen key motion."""
+        order = self.shown.blocks
+        if any(block.gap for block in order):
+            return next((k for k, block in enumerate(order) if self.key in block.keys), -1)
+        return next((k for k, block in enumerate(order) if block.first <= self.frame < block.first + block.count), -1)
+
+    def _next_block(self, step: int) -> None:
+        """Choose the block before or after, and the cut that leads into it."""
+        here, order = self._block_here(), self.shown.blocks
+        to = here if step < 0 <= here and order[here].first < self.frame else here + step
+        while 0 <= to < len(order) and order[to].gap:
+            to += step
+        if 0 <= to < len(order):
+            self.sought.emit(order[to].first)
+            self.chosen.emit(to)
+            cuts = [
+                each.number for each in self.shown.joints if each.kind == "cut" and each.position == order[to].first
+            ]
+            self.chosen_cut.emit(cuts[0] if cuts else -1)
+
+    def _make_key(self) -> None:
+        """Make the motion under the playhead a key motion where it is only on the way."""
+        here = self._block_here()
+        if here >= 0 and not self.shown.blocks[here].keys:
+            self.keyed.emit(here)
 
     # mouse -------------------------------------------------------------------------------------------------------
 
@@ -208,7 +183,7 @@ class ComposedView(QWidget):
         if found.kind == "joint":
             self.chosen_cut.emit(found.index)
         elif found.kind == "block":
-            self.chosen_key.emit(self.shown.blocks[found.index].key)
+            self.chosen.emit(found.index)
         if found.kind not in ("label", "gap"):
             self.sought.emit(found.frame)
 
@@ -231,8 +206,7 @@ class ComposedView(QWidget):
         hover = found.index if found.kind in ("block", "more", "fewer") else -1
         if hover != self.hover:
             self.hover = hover
-            self._still = None
-            self.update()
+            super().refresh()
         self.setCursor(CURSORS.get(found.kind, Qt.CursorShape.ArrowCursor))
 
     def _cross(self, joint: int, where: QPoint) -> None:
@@ -262,15 +236,6 @@ class ComposedView(QWidget):
         elif found.kind == "block" and not self.shown.blocks[found.index].keys:
             self.keyed.emit(found.index)
 
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom in time at the mouse; scroll with Shift or sideways."""
-        steps, sideways = event.angleDelta().y(), event.angleDelta().x()
-        if sideways or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self._set_axis(self.axis.scrolled(-(sideways or steps) / 2))
-        else:
-            self._set_axis(self.axis.zoomed(1.0015**steps, event.position().x()))
-        event.accept()
-
     def leaveEvent(self, event: QEvent) -> None:
         """Nothing is under the mouse any more."""
         self._cross(-1, QPoint())
@@ -279,25 +244,26 @@ class ComposedView(QWidget):
             self.refresh()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Ask for the menu of what was hit."""
-        self.menu_wanted.emit(self._find(event.pos().x(), event.pos().y()), event.globalPos())
+        """Ask for the menu of what was hit; by the keyboard that of the block under the playhead."""
+        if event.reason() != QContextMenuEvent.Reason.Keyboard:
+            self.menu_wanted.emit(self._find(event.pos().x(), event.pos().y()), event.globalPos())
+            return
+        here = self._block_here()
+        if here >= 0:
+            left, _ = blocks.box(self.shown.blocks[here], self.axis)
+            place = QPoint(round(left) + 12, RULER + self.heights[0] // 2)
+            self.menu_wanted.emit(ComposedHit("block", self.frame, here), self.mapToGlobal(place))
 
-    def event(self, event: QEvent) -> bool:
-        """Say what a block is."""
-        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
-            found = self._find(event.pos().x(), event.pos().y())
-            QToolTip.showText(event.globalPos(), self._of_block(found), self)
-            return True
-        return super().event(event)
-
-    def _of_block(self, found: ComposedHit) -> str:
+    def words_at(self, place: QPoint) -> str:
+        """Say what a block is, and what can be done with it."""
+        found = self._find(place.x(), place.y())
         if found.kind not in ("block", "more", "fewer"):
             return ""
         block = self.shown.blocks[found.index]
         what = f"{block.name}: {block.count} frames"
         if block.keys:
             return f"{what}. Drag it to another place; Delete removes it."
-        return f"{what}, on the way. Double-click makes it a key motion."
+        return f"{what}, on the way. Double-click or Enter makes it a key motion."
 
     def gap_room(self) -> tuple[float, float] | None:
         """Left and right end of the gap in pixels, None where there is none."""

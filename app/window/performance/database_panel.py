@@ -32,17 +32,18 @@ class DatabasePanel(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(12, 8, 12, 10)
         column.setSpacing(6)
-        column.addWidget(label("Motion database", "title"))
-        self.kept = label("", "label")
-        column.addWidget(self.kept)
+        head = QHBoxLayout()
+        self.kept = label("", "caption")
+        head.addWidget(label("Motion database", "title"), 1)
+        head.addWidget(self.kept)
+        column.addLayout(head)
         self._size(column)
-        self.transitions = label("", "caption")
-        column.addWidget(self.transitions)
         self.graph_method = self._chooser("graph")
         self.features_method = self._chooser("features")
         self.graph_method.setToolTip("How transitions are found and pruned: robust, or equations 9 to 14 as printed")
         self.features_method.setToolTip("How frames are compared: robust, or equations 1 to 5 as printed")
         methods = Fold("Methods", opened=False)
+        self.transitions = methods.caption
         methods.column.addWidget(Row("Transitions", self.graph_method))
         methods.column.addWidget(Row("Distances", self.features_method))
         column.addWidget(methods)
@@ -98,7 +99,7 @@ class DatabasePanel(QWidget):
     def _show_counts(self) -> None:
         graph = self.state.graph
         if graph is None:
-            self.kept.setText("no motions yet")
+            self.kept.setText("")
             self.transitions.setText("")
             return
         if self._extent[0] is not graph:
@@ -107,12 +108,18 @@ class DatabasePanel(QWidget):
             self._extent = (graph, extent(graph))
         found, tried = self._extent[1], self.trial.result
         assert found is not None
-        self.kept.setText(f"{found.nodes} motions kept of {found.textons} textons")
+        self.kept.setText(f"{found.nodes} of {found.textons} textons")
+        self.kept.setToolTip(f"{found.nodes} motions, each with one of its textons; {found.textons} textons in all")
         if tried is not None:
-            self.transitions.setText(f"{int(tried.kept.sum())} transitions kept")
+            self.transitions.setText(f"{int(tried.kept.sum())} transitions")
         else:
-            parts = f"{found.parts} strong component{'s' if found.parts != 1 else ''}"
-            self.transitions.setText(f"{found.transitions} transitions kept, {parts}")
+            apart = f", {found.parts} parts" if found.parts != 1 else ""
+            self.transitions.setText(f"{found.transitions} transitions{apart}")
+        self.transitions.setToolTip(
+            "Every motion leads to every other one."
+            if found.parts == 1
+            else f"The graph falls into {found.parts} parts: not every motion leads to every other one."
+        )
 
     # changing ----------------------------------------------------------------------------------------------------
 

@@ -21,6 +21,7 @@ from app.stages.job import Job
 from app.window import settings
 from app.window.background_call import BackgroundCalls
 from app.window.controls import Chooser, ErrorBar, NumberField, NumberRange, Row, button, icon_button, label, separator
+from app.window.performance.preview_notes import wears_pictures
 from app.window.performance.state import PerformanceState
 
 if TYPE_CHECKING:
@@ -100,6 +101,8 @@ class ExportDialog(QDialog):
         self.blended.toggled.connect(lambda _: self._check())
         self.path = QCheckBox("Write path.json too: what was composed, and how")
         column.addWidget(Row("", self.blended))
+        self.worn = label("In-betweens have colours at their vertices instead of the picture.", "caption")
+        column.addWidget(Row("", self.worn))
         column.addWidget(Row("", self.path))
         return body
 
@@ -185,6 +188,9 @@ class ExportDialog(QDialog):
         self.film.setVisible(self.chosen == "film")
         for box in (self.blended, self.path):
             box.parentWidget().setVisible(self.chosen != "path")
+        pictures = any(wears_pictures(self.state, each.id) for each in self.state.document.sequences)
+        worn = pictures and self.blended.isChecked() and self.chosen != "path"
+        self.worn.parentWidget().setVisible(worn)
         self.body.setEnabled(not writing)
         why = self._still if self.chosen == "animation" else ""
         if project is None or self.state.placed is None:

@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
-from PySide6.QtCore import QEvent, QPoint, QPointF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QContextMenuEvent,
-    QFocusEvent,
-    QHelpEvent,
-    QImage,
-    QKeyEvent,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
-    QPixmap,
-    QResizeEvent,
-    QWheelEvent,
-)
-from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QContextMenuEvent, QImage, QMouseEvent, QPainter, QResizeEvent, QWheelEvent
+from PySide6.QtWidgets import QSizePolicy
 
 from app.window.performance import graph_paint as paint
 from app.window.performance.graph_view import Lens, Picture, edge_at, fitted, following, neighbour, node_at
+from app.window.performance.keyed_view import PLAIN, KeptView
 
 SLACK = 4.0
 BEAT = 80
@@ -32,10 +22,9 @@ ARROWS = {
     Qt.Key.Key_Up: (0, -1),
     Qt.Key.Key_Down: (0, 1),
 }
-OWN = {*ARROWS, Qt.Key.Key_Tab, Qt.Key.Key_Backtab, Qt.Key.Key_Return, Qt.Key.Key_Enter}
 
 
-class GraphCanvas(QWidget):
+class GraphCanvas(KeptView):
     """Shows a ``Picture``; ``thumbnail(node, step)`` gives the picture of a node, ``step`` counts while it plays.
 
     ``carried`` and ``dropped`` give a node and a global place outside of the canvas, ``crossing`` the nodes of the
@@ -52,16 +41,16 @@ class GraphCanvas(QWidget):
     menu_wanted = Signal(int, QPoint)
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__("Motion graph")
         self.picture = Picture()
         self.lens = Lens()
         self.node = self.hover = -1
         self.edge = (-1, -1)
         self.step = 0
+        self._names: dict[int, QRectF] = {}
         self.thumbnail: Callable[[int, int], QImage | None] = lambda node, step: None
         self.told: Callable[[int, int], str] = lambda start, goal: ""
         self._fitting = True
-        self._still: QPixmap | None = None
         self._grabbed = -1
         self._panning = False
         self._pressed = QPointF()
@@ -70,11 +59,14 @@ class GraphCanvas(QWidget):
         self._beat = QTimer(self)
         self._beat.setInterval(BEAT)
         self._beat.timeout.connect(self._play)
-        self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName("Motion graph")
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setMinimumSize(240, 120)
+        for key, way in ARROWS.items():
+            self.keys[PLAIN, key] = lambda way=way: self.chosen.emit(neighbour(self.picture, self.node, *way))  # type: ignore[misc]
+        self.keys[PLAIN, Qt.Key.Key_PageDown] = self.choose_next
+        self.keys[PLAIN, Qt.Key.Key_PageUp] = lambda: self.choose_next(-1)
+        for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.keys[PLAIN, key] = lambda: self.node >= 0 and self.appended.emit(self.node)
 
     def sizeHint(self) -> QSize:
         """As large as there is room."""
@@ -97,11 +89,6 @@ class GraphCanvas(QWidget):
             self.node = node
             self.refresh()
 
-    def refresh(self) -> None:
-        """Draw anew at the next paint."""
-        self._still = None
-        self.update()
-
     def fit(self) -> None:
         """Show everything."""
         self._fitting = True
@@ -122,50 +109,37 @@ class GraphCanvas(QWidget):
         self.unsetCursor()
         return True
 
-    def changeEvent(self, event: QEvent) -> None:
-        """Take another look."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.StyleChange:
-            self.refresh()
-
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Keep the whole graph in sight until the user has zoomed."""
         if self._fitting:
             self.fit()
         self.refresh()
 
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the kept picture, and the node under the mouse over it."""
-        ratio = self.devicePixelRatioF()
-        if self._still is None or self._still.size() != self.size() * ratio:
-            self._still = QPixmap(self.size() * ratio)
-            self._still.setDevicePixelRatio(ratio)
-            self._paint_still()
-        painter = QPainter(self)
-        painter.drawPixmap(0, 0, self._still)
+    def paint_over(self, painter: QPainter) -> None:
+        """Draw the node under the mouse, which may play."""
         mark = self.picture.mark(self.hover)
         if mark is not None:
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             image = self.thumbnail(mark.node, self.step) or self.thumbnail(mark.node, 0)
-            self._paint_mark(painter, mark, image)
-        painter.end()
+            alone = replace(self.picture, nodes=(mark,))
+            plate = self._names.get(mark.node) or paint.name_plates(alone, self.lens, mark.node)[mark.node]
+            self._paint_mark(painter, mark, image, plate)
 
-    def _paint_still(self) -> None:
-        assert self._still is not None
-        painter = QPainter(self._still)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    def paint_still(self, painter: QPainter) -> None:
+        """Draw the graph."""
         paint.paint_ground(painter, self.width(), self.height(), self.lens)
         paint.paint_groups(painter, self.picture.groups, self.lens)
         paint.paint_edges(painter, self.picture, self.lens, self.node)
+        self._names = paint.name_plates(self.picture, self.lens, self.node)
         for mark in self.picture.nodes:
             image = self.thumbnail(mark.node, 0) if self.lens.size >= paint.PICTURED else None
-            self._paint_mark(painter, mark, image)
-        paint.paint_costs(painter, self.picture, self.lens)
-        painter.end()
+            self._paint_mark(painter, mark, image, self._names.get(mark.node))
+        paint.paint_group_names(painter, self.picture.groups, self.lens)
+        paint.paint_costs(painter, self.picture, self.lens, self._names)
 
-    def _paint_mark(self, painter: QPainter, mark: paint.NodeMark, image: QImage | None) -> None:
+    def _paint_mark(self, painter: QPainter, mark: paint.NodeMark, image: QImage | None, name: QRectF | None) -> None:
         chosen, hovered = mark.node == self.node, mark.node == self.hover
-        paint.paint_node(painter, mark, self.lens, image, chosen=chosen, hovered=hovered, focus=self.hasFocus())
+        focus = self.hasFocus()
+        paint.paint_node(painter, mark, self.lens, image, chosen=chosen, hovered=hovered, focus=focus, name=name)
 
     def _play(self) -> None:
         self.step += 1
@@ -278,45 +252,12 @@ class GraphCanvas(QWidget):
 
     # keys --------------------------------------------------------------------------------------------------------
 
-    def event(self, event: QEvent) -> bool:
-        """Keep the keys that lead through the graph; say what a transition is."""
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent):
-            plain = event.modifiers() in (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
-            if event.key() in OWN and (plain or event.key() == Qt.Key.Key_Backtab):
-                event.accept()
-                return True
-        if event.type() == QEvent.Type.KeyPress and isinstance(event, QKeyEvent) and self._key(event):
-            return True
-        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
-            over = node_at(self.picture, self.lens, event.pos().x(), event.pos().y())
-            text = self.told(over.node, -1) if over is not None else ""
-            QToolTip.showText(event.globalPos(), text, self)
-            return True
-        return super().event(event)
-
-    def _key(self, event: QKeyEvent) -> bool:
-        key = Qt.Key(event.key())
-        if key in ARROWS:
-            self.chosen.emit(neighbour(self.picture, self.node, *ARROWS[key]))
-        elif key in (Qt.Key.Key_Tab, Qt.Key.Key_Backtab):
-            self.choose_next(-1 if key == Qt.Key.Key_Backtab else 1)
-        elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.node >= 0:
-            self.appended.emit(self.node)
-        else:
-            return False
-        return True
+    def words_at(self, place: QPoint) -> str:
+        """Say what a motion is."""
+        over = node_at(self.picture, self.lens, place.x(), place.y())
+        return self.told(over.node, -1) if over is not None else ""
 
     def choose_next(self, step: int = 1) -> None:
         """Choose the node after the chosen one, or before it."""
         if self.picture.nodes:
             self.chosen.emit(following(self.picture, self.node, step))
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        """Show the focus at the chosen node."""
-        super().focusInEvent(event)
-        self.refresh()
-
-    def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Show that the keys go elsewhere."""
-        super().focusOutEvent(event)
-        self.refresh()

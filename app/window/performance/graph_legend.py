@@ -11,14 +11,14 @@ from app.window.performance.state import PerformanceState
 
 LINES = (
     ("key motion", "edit", "disc"),
-    ("best path", "accent", "line"),
-    ("other", "line2", "line"),
-    ("over the limit", "line2", "dash"),
+    ("path", "accent", "line"),
+    ("other transition", "line2", "line"),
+    ("poses far apart", "line2", "dash"),
 )
 
 
 class GraphLegend(QWidget):
-    """One row under the graph; what does not fit is left out from the right."""
+    """One row under the graph: lines first, as sequences are named elsewhere too; what does not fit is left out."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -33,7 +33,7 @@ class GraphLegend(QWidget):
     def show_state(self, state: PerformanceState, visible: bool) -> None:
         """Show the sequences of the project, and what the lines are."""
         rings = tuple((each.name, state.colour(each.id), "ring") for each in state.document.sequences if each.visible)
-        entries = (*rings, *LINES) if visible else ()
+        entries = (*LINES, *rings) if visible else ()
         if entries != self.entries:
             self.entries = entries
             self.update()

@@ -33,9 +33,14 @@ def picture_of(
     path = _path(state, tried)
     nodes = _nodes(state, places, set(path), typed)
     shown = {mark.node for mark in nodes}
-    edges = _edges(graph, kept, shown, path, loop=state.document.performance.loop, faint=tried is not None)
+    edges = _edges(graph, kept, shown, path, loop=state.document.performance.loop, faint=_other_size(state, tried))
     crowded = len(nodes) > CROWD or sum(edge.kind == "kept" for edge in edges) > TANGLE
     return Picture(nodes, edges, _groups(state, nodes) if len(nodes) > CROWD else (), crowded)
+
+
+def _other_size(state: PerformanceState, tried: Tried | None) -> bool:
+    """Whether another size is tried, so that what is pruned is of interest."""
+    return tried is not None and tried.mu != state.document.performance.mu
 
 
 def _path(state: PerformanceState, tried: Tried | None) -> tuple[int, ...]:
@@ -113,7 +118,7 @@ def _groups(state: PerformanceState, nodes: tuple[NodeMark, ...]) -> tuple[Group
         own = [(mark.x, mark.y) for mark in nodes if mark.sequence == sequence.id]
         if own:
             low, high = np.min(own, axis=0), np.max(own, axis=0)
-            middle, half = (low + high) / 2, (high - low) / 2 * 1.25 + 1.2
+            middle, half = (low + high) / 2, (high - low) / 2
             marks.append(GroupMark(sequence.name, state.colour(sequence.id), *middle.tolist(), *half.tolist()))
     return tuple(marks)
 
@@ -130,5 +135,5 @@ def told(state: PerformanceState, start: int, goal: int) -> str:
         return f"{motion.name}: {kind}; frames {first} to {last} are kept of {motion.first} to {motion.last}"
     leave, enter = graph.transitions[start, goal]
     cost = f"cost {graph.complete[start, goal]:.2f}"
-    poor = "; over the limit, kept because nothing else leads there" if graph.poor[start, goal] else ""
+    poor = "; the poses are far apart, but nothing nearer leads there" if graph.poor[start, goal] else ""
     return f"{motion.name} to {state.motions[goal].name}: {cost}, leaves at frame {leave}, enters at {enter}{poor}"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
-from PySide6.QtCore import QPointF, QRectF, Qt
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QImage, QPainter, QPainterPath, QPen, QPolygonF
 
 from app.window import fonts, theme
-from app.window.performance.graph_view import EdgeMark, GroupMark, Lens, NodeMark, Picture, Place, bow, on_bow
+from app.window.performance.graph_view import OVAL, EdgeMark, GroupMark, Lens, NodeMark, Picture, Place, bow, on_bow
 
 Thumbnail = Callable[[int], QImage | None]
 SOLID, ROUND = Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap
@@ -19,6 +20,8 @@ THIN = 400
 """So many edges of one kind are drawn thinly at most, the cheapest first."""
 SHARES = (0.42, 0.55, 0.3, 0.68, 0.2, 0.8)
 """Where along an edge its cost may stand, the best first."""
+ASIDE = (16.0, 28.0, -16.0)
+"""Pixels beside it where it may stand else."""
 
 
 def paint_ground(painter: QPainter, width: int, height: int, lens: Lens) -> None:
@@ -37,16 +40,33 @@ def paint_ground(painter: QPainter, width: int, height: int, lens: Lens) -> None
 
 def paint_groups(painter: QPainter, groups: tuple[GroupMark, ...], lens: Lens) -> None:
     """The room of each sequence in a large graph."""
-    painter.setFont(fonts.font(fonts.BODY, QFont.Weight.DemiBold))
     for group in groups:
         colour = theme.active().colour(group.colour)
-        x, y = lens.pixel(group.x, group.y)
-        wide, high = group.wide * lens.size, group.high * lens.size
         painter.setPen(QPen(_faded(colour, 90), 1))
         painter.setBrush(_faded(colour, 18))
-        painter.drawEllipse(QPointF(x, y), wide, high)
-        painter.setPen(_faded(colour, 220))
-        painter.drawText(QRectF(x - wide, y - high + 4, 2 * wide, 18), Qt.AlignmentFlag.AlignCenter, group.name)
+        painter.drawEllipse(_oval(group, lens))
+
+
+def paint_group_names(painter: QPainter, groups: tuple[GroupMark, ...], lens: Lens) -> None:
+    """Their names, over the edges, at the upper rim."""
+    face = fonts.font(fonts.BODY, QFont.Weight.DemiBold)
+    metrics = QFontMetricsF(face)
+    for group in groups:
+        oval = _oval(group, lens)
+        plate = QRectF(0, 0, metrics.horizontalAdvance(group.name) + 12, metrics.height() + 2)
+        plate.moveCenter(QPointF(oval.center().x(), max(oval.top(), plate.height() / 2 + 2)))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(theme.active().colour("canvas", 225))
+        painter.drawRoundedRect(plate, 4, 4)
+        painter.setFont(face)
+        painter.setPen(theme.active().colour(group.colour))
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, group.name)
+
+
+def _oval(group: GroupMark, lens: Lens) -> QRectF:
+    x, y = lens.pixel(group.x, group.y)
+    wide, high = OVAL * group.wide * lens.across + lens.size, OVAL * group.high * lens.down + lens.size
+    return QRectF(x - wide, y - high, 2 * wide, 2 * high)
 
 
 def paint_edges(painter: QPainter, picture: Picture, lens: Lens, chosen: int) -> None:
@@ -112,14 +132,17 @@ def _paint_head(painter: QPainter, before: Place, tip: Place, colour: QColor, si
     painter.drawPolygon(QPolygonF(points))
 
 
-def paint_costs(painter: QPainter, picture: Picture, lens: Lens) -> None:
-    """The cost of every edge of the path, on a plate where it covers neither a node nor a name nor another cost."""
+def paint_costs(painter: QPainter, picture: Picture, lens: Lens, names: dict[int, QRectF]) -> None:
+    """The cost of every edge of the path, on a plate where it covers neither a node nor a name nor another cost.
+
+    In a crowded graph a cost without such a place is left out: the lane below has it.
+    """
     look = theme.active()
     face = fonts.font(fonts.CAPTION, QFont.Weight.DemiBold)
     metrics = QFontMetricsF(face)
     painter.setFont(face)
     marks = {mark.node: mark for mark in picture.nodes}
-    taken = [room for mark in picture.nodes for room in _rooms(mark, lens)]
+    taken = Taken([*(_circle(mark, lens) for mark in picture.nodes), *names.values()])
     for edge in picture.edges:
         if edge.kind != "path" or edge.start not in marks or edge.goal not in marks:
             continue
@@ -127,9 +150,10 @@ def paint_costs(painter: QPainter, picture: Picture, lens: Lens) -> None:
         curve = bow(start, goal, lens.size / 2)
         text = f"{edge.cost:.2f}"
         plate = QRectF(0, 0, metrics.horizontalAdvance(text) + 10, metrics.height() + 2)
-        places = [plate.translated(QPointF(*on_bow(*curve, share)) - plate.center()) for share in SHARES]
-        plate = min(places, key=lambda place: sum(_area(place.intersected(room)) for room in taken))
-        taken.append(plate)
+        covered, plate = taken.take([plate.translated(spot - plate.center()) for spot in _spots(curve)])
+        if picture.crowded and covered > 0:
+            continue
+        taken.keep(plate)
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.colour("canvas", 235))
         painter.drawRoundedRect(plate, 4, 4)
@@ -137,23 +161,82 @@ def paint_costs(painter: QPainter, picture: Picture, lens: Lens) -> None:
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
 
 
-def _area(room: QRectF) -> float:
-    return room.width() * room.height() if room.isValid() else 0.0
+def _spots(curve: tuple[Place, Place, Place]) -> list[QPointF]:
+    """Where the cost of an edge may stand: on it, then beside it on the side that it bows to."""
+    begin, _, end = curve
+    length = max(math.dist(begin, end), 1e-6)
+    aside = QPointF(-(end[1] - begin[1]) / length, (end[0] - begin[0]) / length)
+    on = [QPointF(*on_bow(*curve, share)) for share in SHARES]
+    return [*on, *(spot + aside * shift for shift in ASIDE for spot in on[:3])]
 
 
-def _rooms(mark: NodeMark, lens: Lens) -> tuple[QRectF, QRectF]:
-    """What a node and its name cover."""
+class Taken:
+    """Rooms that are covered already, of which new ones keep clear as far as they can."""
+
+    def __init__(self, rooms: Iterable[QRectF]) -> None:
+        self._rows = np.array([_row(room) for room in rooms]).reshape(-1, 4)
+
+    def take(self, rooms: list[QRectF]) -> tuple[float, QRectF]:
+        """The room that covers least, the first of equals, and how many pixels it covers; it is not kept."""
+        best = (math.inf, rooms[0])
+        for room in rooms:
+            low, high = np.maximum(self._rows[:, :2], _row(room)[:2]), np.minimum(self._rows[:, 2:], _row(room)[2:])
+            covered = float(np.prod(np.clip(high - low, 0.0, None), axis=1).sum())
+            if covered < best[0]:
+                best = (covered, room)
+            if not covered:
+                break
+        return best
+
+    def keep(self, room: QRectF) -> None:
+        """Let others keep clear of it too."""
+        self._rows = np.vstack([self._rows, _row(room)])
+
+
+def _row(room: QRectF) -> tuple[float, float, float, float]:
+    return room.left(), room.top(), room.right(), room.bottom()
+
+
+def _circle(mark: NodeMark, lens: Lens) -> QRectF:
     x, y = lens.pixel(mark.x, mark.y)
-    radius = lens.size / 2
-    wide = QFontMetricsF(fonts.font(fonts.CAPTION, QFont.Weight.DemiBold)).horizontalAdvance(mark.name) + 8
-    name = QRectF(x - wide / 2, y + radius, wide, 24 if lens.size >= NAMED or mark.on_path else 0)
-    return QRectF(x - radius, y - radius, 2 * radius, 2 * radius), name
+    return QRectF(x - lens.size / 2, y - lens.size / 2, lens.size, lens.size)
+
+
+def name_plates(picture: Picture, lens: Lens, chosen: int = -1) -> dict[int, QRectF]:
+    """Where the names that are seen stand: below their nodes, or where they cover less of other nodes and names."""
+    metrics = {strong: QFontMetricsF(_name_face(strong)) for strong in (False, True)}
+    circles = {mark.node: _circle(mark, lens) for mark in picture.nodes}
+    plates: dict[int, QRectF] = {}
+    taken = Taken(circles.values())
+    for mark in sorted(picture.nodes, key=lambda mark: (mark.node != chosen, not mark.on_path)):
+        if not (lens.size >= NAMED or mark.on_path or mark.node == chosen):
+            continue
+        ring = mark.on_path or mark.node == chosen
+        room, circle = metrics[ring], circles[mark.node]
+        size = QSizeF(room.horizontalAdvance(_name(mark, room)) + 8, room.height())
+        gap = 7.0 if ring else 4.0
+        middle = circle.center()
+        down = QPointF(0, circle.height() / 2 + gap + size.height() / 2)
+        across = QPointF(circle.width() / 2 + gap + size.width() / 2, 0)
+        plate = QRectF(QPointF(), size)
+        spots = [plate.translated(middle + step - plate.center()) for step in (down, -down, across, -across)]
+        _, plates[mark.node] = taken.take(spots)
+        taken.keep(plates[mark.node])
+    return plates
 
 
 def paint_node(
-    painter: QPainter, mark: NodeMark, lens: Lens, image: QImage | None, *, chosen: bool, hovered: bool, focus: bool
+    painter: QPainter,
+    mark: NodeMark,
+    lens: Lens,
+    image: QImage | None,
+    *,
+    chosen: bool,
+    hovered: bool,
+    focus: bool,
+    name: QRectF | None = None,
 ) -> None:
-    """One motion: picture, ring, name, what is said about it."""
+    """One motion: picture, ring, its name on a plate of a place, what is said about it."""
     look = theme.active()
     x, y = lens.pixel(mark.x, mark.y)
     radius = lens.size / 2
@@ -170,8 +253,8 @@ def paint_node(
     if chosen and focus:
         painter.setPen(QPen(look.colour("accent"), 2))
         painter.drawEllipse(circle.adjusted(-7, -7, 7, 7))
-    if lens.size >= NAMED or chosen or hovered or mark.on_path:
-        _paint_name(painter, mark, x, y + radius + (7 if mark.on_path or chosen else 4), chosen or hovered)
+    if name is not None:
+        _paint_name(painter, mark, name, chosen or hovered)
     if mark.badges:
         turned = radius * 0.74
         paint_badge(painter, x + turned, y - turned, mark.badges)
@@ -199,19 +282,24 @@ def _paint_inside(painter: QPainter, mark: NodeMark, circle: QRectF, image: QIma
         painter.drawEllipse(circle)
 
 
-def _paint_name(painter: QPainter, mark: NodeMark, x: float, top: float, strong: bool) -> None:
+def _name_face(strong: bool) -> QFont:
+    return fonts.font(fonts.CAPTION, QFont.Weight.DemiBold if strong else QFont.Weight.Medium)
+
+
+def _name(mark: NodeMark, metrics: QFontMetricsF) -> str:
+    return metrics.elidedText(mark.name, Qt.TextElideMode.ElideMiddle, 150)
+
+
+def _paint_name(painter: QPainter, mark: NodeMark, plate: QRectF, strong: bool) -> None:
     look = theme.active()
-    face = fonts.font(fonts.CAPTION, QFont.Weight.DemiBold if strong or mark.on_path else QFont.Weight.Medium)
-    metrics = QFontMetricsF(face)
-    text = metrics.elidedText(mark.name, Qt.TextElideMode.ElideMiddle, 150)
-    plate = QRectF(0, 0, metrics.horizontalAdvance(text) + 8, metrics.height())
-    plate.moveCenter(QPointF(x, top + plate.height() / 2))
+    face = _name_face(strong or mark.on_path)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(look.colour("canvas", 190))
     painter.drawRoundedRect(plate, 3, 3)
     painter.setFont(face)
     painter.setPen(look.colour("err" if mark.forbidden else "text" if strong or mark.on_path else "text2"))
-    painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, text)
+    text = _name(mark, QFontMetricsF(face))
+    painter.drawText(plate, int(Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextDontClip), text)
 
 
 def paint_badge(painter: QPainter, x: float, y: float, numbers: tuple[int, ...]) -> None:

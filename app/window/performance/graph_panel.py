@@ -95,9 +95,14 @@ class GraphPanel(Panel):
         self.key.setToolTip("Add the chosen motion to the timeline  (Enter)")
         self.header.title.setMinimumWidth(self.header.title.sizeHint().width())
         row = self.header.row
-        for each in (self.filter, self.forbid, self.key):
+        self.tools = (
+            self.filter,
+            self.forbid,
+            self.key,
+            icon_button("fit", "Show the whole graph", self.canvas.fit, "fit"),
+        )
+        for each in self.tools:
             row.addWidget(each)
-        row.addWidget(icon_button("fit", "Show the whole graph", self.canvas.fit, "fit"))
 
     def _connect(self) -> None:
         canvas, state = self.canvas, self.state
@@ -124,6 +129,8 @@ class GraphPanel(Panel):
         picture = picture_of(state, self.places.places, tried=self.trial.result, typed=self.filter.text())
         self.canvas.show_picture(picture)
         self.stack.setCurrentWidget(self.canvas if picture.nodes else self.nothing)
+        for each in self.tools:
+            each.setVisible(bool(picture.nodes))
         shown = sum(not mark.dim for mark in picture.nodes)
         stale = "" if state.fresh or state.graph is None else ", being made anew"
         self.header.caption.setText(f"{shown} of {len(state.motions)} motions shown{stale}" if state.motions else "")

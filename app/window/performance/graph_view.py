@@ -14,6 +14,8 @@ WIDEST, STRETCH, SHARE = 150.0, 2.6, 0.62
 """Pixels of the layout's unit at most, how much more in one direction; what a node takes of the way to the nearest."""
 NAME = (96.0, 44.0)
 """Room for names and badges beside and below."""
+OVAL = 1.25
+"""How much wider than its nodes the oval of a group is."""
 BEND = 0.16
 """How far an edge bows, as a share of its length, so that both directions can be told apart."""
 
@@ -48,7 +50,7 @@ class EdgeMark:
 
 @dataclass(frozen=True)
 class GroupMark:
-    """Room that a sequence's motions take in a large graph: centre and half axes."""
+    """Room that a sequence's motions take in a large graph: centre, and half of what the nodes' middles span."""
 
     name: str
     colour: str
@@ -106,12 +108,16 @@ def fitted(picture: Picture, width: float, height: float) -> Lens:
     if not picture.nodes:
         return Lens(dx=width / 2, dy=height / 2)
     xs, ys = [mark.x for mark in picture.nodes], [mark.y for mark in picture.nodes]
+    for group in picture.groups:
+        xs += [group.x - OVAL * group.wide, group.x + OVAL * group.wide]
+        ys += [group.y - OVAL * group.high, group.y + OVAL * group.high]
     wide, high = max(max(xs) - min(xs), 0.5), max(max(ys) - min(ys), 0.5)
     size = min(FITTED, 0.3 * height)
     across = min(max(width - size - NAME[0], 60.0) / wide, WIDEST)
     down = min(max(height - size - NAME[1], 40.0) / high, WIDEST)
     across, down = min(across, STRETCH * down), min(down, STRETCH * across)
-    size = max(min(size, SHARE * _nearest(xs, ys, across, down)), SMALLEST)
+    near = _nearest([mark.x for mark in picture.nodes], [mark.y for mark in picture.nodes], across, down)
+    size = max(min(size, SHARE * near), SMALLEST)
     dx = width / 2 - across * (max(xs) + min(xs)) / 2
     return Lens(size, across, down, dx, (height - NAME[1] / 2) / 2 - down * (max(ys) + min(ys)) / 2)
 

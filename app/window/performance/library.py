@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QEvent, QPoint, Qt, Signal
-from PySide6.QtGui import QDragEnterEvent, QDropEvent, QImage
+from PySide6.QtGui import QDragEnterEvent, QDropEvent, QImage, QResizeEvent
 from PySide6.QtWidgets import QApplication, QFileDialog, QMenu, QVBoxLayout, QWidget
 
 from app.actions.kinds import kind_of
@@ -16,7 +16,7 @@ from app.model.performance import CapturedSequence
 from app.stages.job import Job
 from app.window.controls import ErrorBar, Fold, Panel, ScrollColumn, button, icon_button, label
 from app.window.performance.card_words import strip_of, warnings_of
-from app.window.performance.sequence_cards import Card, SequenceCards
+from app.window.performance.sequence_cards import ROOMY, Card, SequenceCards
 from app.window.performance.sequence_facts import SequenceFacts
 from app.window.performance.sequence_structure import SequenceStructure
 from app.window.performance.state import PerformanceState
@@ -77,6 +77,11 @@ class Library(Panel):
             place = self.cards.mapTo(self.body.widget(), box.center().toPoint())
             self.body.ensureVisible(place.x(), place.y(), 0, round(box.height() / 2) + 2)
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Keep the chosen card in sight."""
+        super().resizeEvent(event)
+        self._bring_into_sight(self.state.sequence_id)
+
     def _empty(self) -> QWidget:
         body = QWidget()
         column = QVBoxLayout(body)
@@ -136,6 +141,7 @@ class Library(Panel):
             tone=tone,
             warnings=warnings_of(sequence),
             hidden=not sequence.visible,
+            low=len(self.state.document.sequences) > ROOMY,
         )
 
     def _state_of(self, sequence: CapturedSequence) -> tuple[str, str]:

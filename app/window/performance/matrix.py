@@ -44,6 +44,8 @@ class Matrix(Panel):
         self._found: Any = None
         self.view.sought.connect(lambda frame: state.show_source(state.sequence_id, frame))
         self.view.moved.connect(self._moved)
+        self.view.stepped.connect(self._step)
+        strip.view.chosen.connect(lambda _: self.view.show_boundary(strip.view.boundary))
         strip.refreshed.connect(self.refresh)
         for signal in (state.position_changed, state.source_changed, state.shows_changed):
             signal.connect(self._move)
@@ -81,10 +83,16 @@ class Matrix(Panel):
 
     def _move(self, *_: object) -> None:
         self.view.show_frame(self.strip.view.frame)
+        self.view.show_boundary(self.strip.view.boundary)
 
     def _moved(self, old: int, new: int) -> None:
         if not self.strip.move_boundary(old, new):
             self.view.cancel()
+
+    def _step(self, step: int) -> None:
+        """Choose the next boundary as the strip does; the same keys then move it and take it away."""
+        self.strip.view.next_boundary(step)
+        self.view.show_boundary(self.strip.view.boundary)
 
     def showEvent(self, event: Any) -> None:
         """Draw what changed while it was hidden."""

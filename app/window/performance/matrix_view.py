@@ -5,17 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QHelpEvent, QImage, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
-from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+from PySide6.QtGui import QColor, QFont, QImage, QMouseEvent, QPainter, QPaintEvent, QPen, QWheelEvent
+from PySide6.QtWidgets import QSizePolicy
 
 from app.window import fonts, theme
 from app.window.canvas import marks
+from app.window.performance.keyed_view import PLAIN, SHIFT, KeyedView
 from app.window.performance.strip import BoundaryDrag, Strip, drag_of
 
 UNDER = QColor(13, 15, 18, 110)
 EDGE, MARGIN, GRAB = 12.0, 10.0, 5.0
 MARK, HELD = "#FFFFFF", "#FFA94D"
 """Boundaries are drawn over the matrix's own colours, whatever the look."""
+ARROWS = {
+    Qt.Key.Key_Left: (-1, 0),
+    Qt.Key.Key_Right: (1, 0),
+    Qt.Key.Key_Up: (0, -1),
+    Qt.Key.Key_Down: (0, 1),
+}
 
 
 @dataclass(frozen=True)
@@ -54,28 +61,38 @@ def window_of(size: tuple[int, int], count: int, first: tuple[float, float], man
     return Window((x, y), many, left, top, side)
 
 
-class MatrixView(QWidget):
-    """``sought`` asks for a frame, ``moved`` gives a boundary's old and new frame at the end of a drag."""
+class MatrixView(KeyedView):
+    """``sought`` asks for a frame, ``moved`` gives a boundary's old and new frame at the end of a drag, ``stepped``
+    asks for the next boundary (1) or the one before (-1).
+
+    boundary : the one that is chosen, -1 for none.
+    """
 
     sought = Signal(int)
+    stepped = Signal(int)
     moved = Signal(int, int)
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__("Self-similarity of the sequence")
         self.strip = Strip()
         self.picture = QImage()
-        self.frame = -1
+        self.frame = self.boundary = -1
         self.drag: BoundaryDrag | None = None
         self.distance = lambda one, other: float("nan")
         self._first, self._many = (0.0, 0.0), 1e9
         self._grab: tuple[int, int] | None = None
         self._pan: QPointF | None = None
         self._mouse: tuple[int, int] | None = None
-        self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setMinimumSize(200, 200)
-        self.setAccessibleName("Self-similarity of the sequence")
+        for held, frames in ((PLAIN, 1), (SHIFT, 10)):
+            for key, (across, down) in ARROWS.items():
+                step = (across * frames, down * frames)
+                self.keys[held, key] = lambda step=step: self._point(*step)  # type: ignore[misc]
+        self.keys[PLAIN, Qt.Key.Key_PageUp] = lambda: self.stepped.emit(-1)
+        self.keys[PLAIN, Qt.Key.Key_PageDown] = lambda: self.stepped.emit(1)
+        for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.keys[PLAIN, key] = lambda: self._mouse is not None and self.sought.emit(self._mouse[0])
 
     @property
     def window_(self) -> Window:
@@ -93,6 +110,20 @@ class MatrixView(QWidget):
         """Mark the playhead, -1 for none."""
         if frame != self.frame:
             self.frame = frame
+            self.update()
+
+    def show_boundary(self, boundary: int) -> None:
+        """Mark the boundary that is chosen, -1 for none."""
+        if boundary != self.boundary:
+            self.boundary = boundary
+            self.update()
+
+    def _point(self, across: int, down: int) -> None:
+        """Look two moments up by the keys, from the playhead on."""
+        last = self.strip.count - 1
+        if last >= 0:
+            one, other = self._mouse or (max(self.frame, 0), max(self.frame, 0))
+            self._mouse = (min(max(one + across, 0), last), min(max(other + down, 0), last))
             self.update()
 
     def show_all(self) -> None:
@@ -191,13 +222,6 @@ class MatrixView(QWidget):
         self.update()
         return was
 
-    def event(self, event: QEvent) -> bool:
-        """Say how different two moments are, and why a motion is one."""
-        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
-            QToolTip.showText(event.globalPos(), self.words_at(event.pos()), self)
-            return True
-        return super().event(event)
-
     def words_at(self, place: QPoint) -> str:
         """What is to be said of a place; empty for nothing."""
         found = self.frames_at(place.x(), place.y())
@@ -231,7 +255,8 @@ class MatrixView(QWidget):
         for frame in self.strip.boundaries:
             held = self.drag is not None and self.drag.old == frame
             shown = self.drag.new if held and self.drag is not None else frame
-            self._lines(painter, seen, shown, QPen(theme.active().colour(HELD if held else MARK), 2.0 if held else 1.2))
+            token = HELD if held else "accent" if frame == self.boundary else MARK
+            self._lines(painter, seen, shown, QPen(theme.active().colour(token), 1.2 if token == MARK else 2.0))
         if self.frame >= 0:
             self._lines(painter, seen, self.frame + 0.5, QPen(theme.active().colour("accent"), 1.4))
         painter.setClipping(False)
@@ -240,7 +265,18 @@ class MatrixView(QWidget):
         elif self._mouse is not None:
             one, other = self._mouse
             self._plate(painter, seen, f"{one} and {other}: {self.distance(one, other):.3f}")
+            if self.ringed:
+                self._cross(painter, seen, one, other)
+        self.paint_ring(painter)
         painter.end()
+
+    def _cross(self, painter: QPainter, seen: Window, one: int, other: int) -> None:
+        """Where the keys point."""
+        place = QPointF(seen.place(one + 0.5, 0), seen.place(other + 0.5, 1))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for pen in (QPen(UNDER, 4.0), QPen(theme.active().colour(MARK), 1.6)):
+            painter.setPen(pen)
+            painter.drawEllipse(place, 5.0, 5.0)
 
     def _motions(self, painter: QPainter, seen: Window) -> None:
         painter.setPen(Qt.PenStyle.NoPen)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.model.edits import performance as edits
@@ -9,6 +12,29 @@ from app.window import theme
 from app.window.controls import Chooser, Elided, NumberField, NumberRange, toggle
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.state import PerformanceState
+
+
+class PathChooser(Chooser):
+    """The best path and the next best. ``looked_at`` gives the one that is marked in the open list, -1 at its end."""
+
+    looked_at = Signal(int)
+
+    def __init__(self) -> None:
+        super().__init__(name="Which path is taken")
+        self._looking = False
+        self.highlighted.connect(self._look)
+
+    def _look(self, number: int) -> None:
+        if self.view().isVisible():
+            self._looking = True
+            self.looked_at.emit(number)
+
+    def hidePopup(self) -> None:
+        """Nothing is looked at any more."""
+        super().hidePopup()
+        if self._looking:
+            self._looking = False
+            self.looked_at.emit(-1)
 
 
 class OptionsBar(QWidget):
@@ -33,7 +59,7 @@ class OptionsBar(QWidget):
         self.refresh()
 
     def _paths(self, row: QHBoxLayout) -> None:
-        self.paths = Chooser(name="Which path is taken")
+        self.paths = PathChooser()
         self.paths.setToolTip("The best path and the next best: the cost of the worst transition, and the length")
         self.paths.setFixedWidth(262)
         self.paths.activated.connect(self._take)
@@ -84,6 +110,8 @@ class OptionsBar(QWidget):
         self.seconds.set_value(frames / fps)
         for field in (self.frames, self.seconds):
             field.setEnabled(choice.length is not None)
+            if choice.length is None and not state.frame_count:
+                field.setText("")
         self.loop.setChecked(choice.loop)
         self.align.setChecked(choice.align)
         self.blend.setChecked(choice.blend)
@@ -107,8 +135,14 @@ class OptionsBar(QWidget):
         if texts != [self.paths.itemText(number) for number in range(self.paths.count())]:
             self.paths.clear()
             self.paths.addItems(texts)
+        for number, path in enumerate(self.state.paths):
+            self.paths.setItemData(number, self._way(path), Qt.ItemDataRole.ToolTipRole)
         self.paths.setCurrentIndex(min(self.state.document.performance.alternative, len(texts) - 1))
         self.paths.setEnabled(len(texts) > 1)
+
+    def _way(self, path: Any) -> str:
+        """The motions of a path by their names."""
+        return ", ".join(self.state.motions[node].name for node in path.path if node < len(self.state.motions))
 
     def _show_cut(self) -> None:
         performance, cut = self.state.performance, self.state.cut

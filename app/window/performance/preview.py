@@ -11,11 +11,13 @@ from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QToolButton, QWidget
 
 from app.window import icons
 from app.window.controls import Elided, ErrorBar, Panel, icon_button, toggle
+from app.window.controls.own_keys import OwnKeys
 from app.window.lazy_view import LazyView
 from app.window.performance.player import Dropped, FrameReader, ahead, way
-from app.window.performance.preview_notes import MODES, Mode, cut_lines, cut_near, paint_lines, place_line
+from app.window.performance.preview_notes import MODES, Mode, cut_lines, cut_near, paint_lines, place_lines
 from app.window.performance.preview_source import Source, front, opener, wanted_source
 from app.window.performance.state import PerformanceState
+from app.window.performance.view_keys import ViewKeys
 from app.window.viewport.hosts import Choice
 from app.window.viewport.lens import Lens
 from app.window.work import details
@@ -28,6 +30,7 @@ NO_SEQUENCE = "Add a sequence to see it here."
 NO_PERFORMANCE = "Choose motions in the graph: what they make is played here."
 NO_PATH = "There is no path through the key motions: the timeline says what would help."
 COMPOSING = "The performance is being composed…"
+NOT_COMPOSED = "The performance has not been composed yet: Ctrl+Enter runs what is missing."
 READING = "Reading the frames…"
 ASIDE = 0.7
 """Radians from the performer's front to where one looks from at first."""
@@ -53,12 +56,14 @@ class Preview(Panel):
         self._watch = QElapsedTimer()
         self.reader = FrameReader(self)
         self.stage: StageView | None = None
+        self.keys: ViewKeys | None = None
         self.view = LazyView(choice)
         self.errors = ErrorBar()
         self._header()
         self.column.addWidget(self.errors)
         self.column.addWidget(self.view, 1)
-        self.column.addWidget(self._footer())
+        self.footer = self._footer()
+        self.column.addWidget(self.footer)
         self._connect()
         self._show_nothing()
 
@@ -71,7 +76,8 @@ class Preview(Panel):
             each.setAccessibleName(each.text())
             each.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
             self.header.row.addWidget(each)
-        self.header.row.addWidget(icon_button("fit", "Show the whole performer", self.fit, "F"))
+        self.fit_button = icon_button("fit", "Show the whole performer", self.fit, "F")
+        self.header.row.addWidget(self.fit_button)
 
     def _footer(self) -> QWidget:
         bar = QWidget()
@@ -91,6 +97,7 @@ class Preview(Panel):
             each.setCheckable(True)
             each.setChecked(mode == self.mode)
             each.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            OwnKeys(each)
             each.toggled.connect(lambda on, mode=mode: self.show_mode(mode) if on else None)
             self.modes.addButton(each)
             self.mode_buttons[mode] = each
@@ -152,6 +159,14 @@ class Preview(Panel):
         state = self.state
         return bool(state.document.performance.keys) and state.gap is None and not state.problem
 
+    def show_controls(self, on: bool) -> None:
+        """Show what plays and compares, or nothing of it where there is nothing to play."""
+        for each in (self.footer, self.ghost_button, self.follow_button, self.fit_button):
+            each.setVisible(on)
+
+    def _working(self) -> bool:
+        return self.state.project is not None and bool(self.state.project.progress)
+
     def _caption(self) -> str:
         if not self.state.document.sequences:
             return ""
@@ -166,7 +181,9 @@ class Preview(Panel):
             self.stage.clear()
             self.stage.begin()
         document = self.state.document
-        words = NO_PATH if document.performance.keys and not self._being_composed() else NO_PERFORMANCE
+        words = NO_PERFORMANCE
+        if document.performance.keys:
+            words = NO_PATH if not self._being_composed() else COMPOSING if self._working() else NOT_COMPOSED
         self.view.say(words if document.sequences else NO_SEQUENCE)
         self.play_button.setEnabled(False)
         self.rate.setText("")
@@ -191,14 +208,14 @@ class Preview(Panel):
         viewport = self.view.viewport
         assert viewport is not None
         self.stage = StageView(viewport)
+        self.keys = ViewKeys(viewport)
         self.stage.follow = self.follow_button.isChecked()
         viewport.notes = (self._paint,)
         viewport.calm = self._calm
         self._moved()
 
     def _calm(self) -> bool:
-        project = self.state.project
-        return not self.state.playback.playing and (project is None or not project.progress)
+        return not self.state.playback.playing and not self._working()
 
     def show_mode(self, mode: Mode) -> None:
         """Show cuts blended, as they are, or every clip where it was filmed."""
@@ -305,6 +322,10 @@ class Preview(Panel):
         if self.stage is not None:
             self.stage.fit()
 
+    def command(self, name: str) -> bool:
+        """Do a command of the 3D view where it has the keys; says whether it did."""
+        return self.keys is not None and self.keys.command(name)
+
     def azimuth(self) -> float | None:
         """From which side one looks, degrees from +x towards +y; None while nothing is shown."""
         if self.view.viewport is None or self.frame is None:
@@ -321,9 +342,11 @@ class Preview(Panel):
 
     def _paint(self, painter: QPainter, lens: Lens) -> None:
         frame = self.frame
+        if self.keys is not None:
+            self.keys.paint(painter)
         if frame is None or self.stage is None:
             return
-        top = place_line(self.state, frame.sequence, frame.source, frame.blended)
+        top = place_lines(self.state, frame.sequence, frame.source, frame.blended)
         near = cut_near(self.state, self.shown) if self.state.shows == "performance" else None
         paint_lines(painter, lens.size, top, cut_lines(near, self.mode) if near is not None else [])
 

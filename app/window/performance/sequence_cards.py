@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, QPoint, QRectF, QSize, Qt, Signal
@@ -14,15 +15,15 @@ from PySide6.QtGui import (
     QMouseEvent,
     QPainter,
     QPaintEvent,
-    QPen,
 )
-from PySide6.QtWidgets import QLineEdit, QSizePolicy, QWidget
+from PySide6.QtWidgets import QLineEdit, QSizePolicy
 
 from app.window import fonts, icons, theme
+from app.window.performance.keyed_view import PLAIN, KeyedView, paint_ring
 
-GAP, PICTURE, LEFT, BASE, LINE = 6, 54, 74, 70, 18
-STRIP = (47, 12)
-"""Top and height of the strip in its card."""
+GAP, LEFT, LINE = 6, 74, 18
+ROOMY = 3
+"""Of more sequences than so many each card is lower."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +42,7 @@ class Card:
 
     state : a few words, empty where there is nothing to say; tone : token of its colour.
     warnings : sentences below the strip. hidden : its motions are not shown in the graph.
+    low : whether it is lower, where there are many: name and caption stand in one line.
     """
 
     id: str
@@ -51,11 +53,27 @@ class Card:
     tone: str = "text3"
     warnings: tuple[str, ...] = ()
     hidden: bool = False
+    low: bool = False
+
+    @property
+    def base(self) -> int:
+        """Pixels without the warnings."""
+        return 50 if self.low else 70
+
+    @property
+    def picture(self) -> int:
+        """Pixels of the picture's side."""
+        return 40 if self.low else 54
+
+    @property
+    def strip_room(self) -> tuple[int, int]:
+        """Top and height of the strip."""
+        return (30, 10) if self.low else (47, 12)
 
     @property
     def height(self) -> int:
         """Pixels."""
-        return BASE + LINE * len(self.warnings) + (4 if self.warnings else 0)
+        return self.base + LINE * len(self.warnings) + (4 if self.warnings else 0)
 
 
 class NameField(QLineEdit):
@@ -73,7 +91,7 @@ class NameField(QLineEdit):
         return super().event(event)
 
 
-class SequenceCards(QWidget):
+class SequenceCards(KeyedView):
     """Cards to choose from; Up and Down choose, Return plays, F4 renames, Delete removes."""
 
     chosen = Signal(str)
@@ -83,15 +101,24 @@ class SequenceCards(QWidget):
     menu_wanted = Signal(str, QPoint)
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__("Sequences")
         self.cards: tuple[Card, ...] = ()
         self.pictures: dict[str, QImage] = {}
         self.selected = ""
         self._hover = ""
         self.field: NameField | None = None
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setMouseTracking(True)
-        self.setAccessibleName("Sequences")
+        moves: dict[Qt.Key, Callable[[int], int]] = {
+            Qt.Key.Key_Up: lambda place: place - 1,
+            Qt.Key.Key_Down: lambda place: place + 1,
+            Qt.Key.Key_Home: lambda place: 0,
+            Qt.Key.Key_End: lambda place: len(self.cards) - 1,
+        }
+        for key, to in moves.items():
+            self.keys[PLAIN, key] = lambda to=to: self._move(to)  # type: ignore[misc]
+        for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.keys[PLAIN, key] = lambda: self.selected and self.played.emit(self.selected)
+        self.keys[PLAIN, Qt.Key.Key_F4] = lambda: self.rename(self.selected)
+        self.keys[PLAIN, Qt.Key.Key_Delete] = lambda: self.selected and self.removed.emit(self.selected)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setFixedHeight(0)
 
@@ -141,14 +168,18 @@ class SequenceCards(QWidget):
             self.played.emit(found)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Show all of what is shortened."""
+        """Show which card the mouse is over."""
         found = self.at(event.position().y())
         if found != self._hover:
             self._hover = found
-            card = next((each for each in self.cards if each.id == found), None)
-            lines = [card.name, card.caption, card.state, *card.warnings] if card is not None else []
-            self.setToolTip("\n".join(line for line in lines if line))
             self.update()
+
+    def words_at(self, place: QPoint) -> str:
+        """All of what may be shortened on a card."""
+        found = self.at(place.y())
+        card = next((each for each in self.cards if each.id == found), None)
+        lines = [card.name, card.caption, card.state, *card.warnings] if card is not None else []
+        return "\n".join(line for line in lines if line)
 
     def leaveEvent(self, event: QEvent) -> None:
         """Nothing is under the mouse."""
@@ -156,36 +187,21 @@ class SequenceCards(QWidget):
         self.update()
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Ask for what can be done with a card."""
+        """Ask for what can be done with a card; by the keyboard with the chosen one."""
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            place = self.box(self.selected).center().toPoint()
+            if self.selected:
+                self.menu_wanted.emit(self.selected, self.mapToGlobal(place))
+            return
         found = self.at(event.pos().y())
         if found:
             self.menu_wanted.emit(found, event.globalPos())
 
-    def event(self, event: QEvent) -> bool:
-        """Keep the keys of the list while it has the focus."""
-        own = (Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_Return, Qt.Key.Key_F4, Qt.Key.Key_Delete)
-        if event.type() == QEvent.Type.ShortcutOverride and isinstance(event, QKeyEvent) and event.key() in own:
-            event.accept()
-            return True
-        return super().event(event)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Move, play, rename, remove."""
+    def _move(self, to: Callable[[int], int]) -> None:
+        """Choose the card that a rule gives from the place of the chosen one."""
         order = [card.id for card in self.cards]
-        key = event.key()
-        if not order or self.selected not in order:
-            super().keyPressEvent(event)
-        elif key in (Qt.Key.Key_Up, Qt.Key.Key_Down):
-            step = 1 if key == Qt.Key.Key_Down else -1
-            self.chosen.emit(order[min(max(order.index(self.selected) + step, 0), len(order) - 1)])
-        elif key == Qt.Key.Key_Return:
-            self.played.emit(self.selected)
-        elif key == Qt.Key.Key_F4:
-            self.rename(self.selected)
-        elif key == Qt.Key.Key_Delete:
-            self.removed.emit(self.selected)
-        else:
-            super().keyPressEvent(event)
+        if self.selected in order:
+            self.chosen.emit(order[min(max(to(order.index(self.selected)), 0), len(order) - 1)])
 
     def rename(self, sequence_id: str) -> None:
         """Type another name in its place."""
@@ -237,32 +253,42 @@ class SequenceCards(QWidget):
     def _paint(self, painter: QPainter, card: Card, box: QRectF) -> None:
         look = theme.active()
         chosen = card.id == self.selected
-        focused = chosen and self.hasFocus()
-        painter.setPen(QPen(look.colour("accent"), 2.0 if focused else 1.4) if chosen else Qt.PenStyle.NoPen)
+        painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(look.colour("hover" if chosen or card.id == self._hover else "raised"))
         painter.drawRoundedRect(box.adjusted(1, 1, -1, -1), 5, 5)
+        if chosen:
+            painter.setBrush(look.colour("accent"))
+            painter.drawRoundedRect(QRectF(box.left() + 1, box.top() + 1, 3.5, box.height() - 2), 1.7, 1.7)
+        if chosen and self.ringed and self.hasFocus():
+            paint_ring(painter, box)
         painter.save()
         painter.translate(box.topLeft())
         self._picture(painter, card)
         painter.setOpacity(0.55 if card.hidden else 1.0)
         right = box.width() - 10
-        _text(painter, QRectF(LEFT, 6, right - LEFT, 18), card.name, "text", fonts.BODY, QFont.Weight.DemiBold)
-        _two(painter, QRectF(LEFT, 25, right - LEFT, 18), card.caption, card.state, card.tone)
-        self._strip(painter, card, QRectF(LEFT, STRIP[0], right - LEFT, STRIP[1]))
+        name = QRectF(LEFT, 5 if card.low else 6, right - LEFT, 18)
+        if card.low:
+            said, tone = (card.state, card.tone) if card.state else (card.caption.split(" · ")[0], "text3")
+            _two(painter, name, card.name, said, tone, strong=True)
+        else:
+            _text(painter, name, card.name, "text", fonts.BODY, QFont.Weight.DemiBold)
+            _two(painter, QRectF(LEFT, 25, right - LEFT, 18), card.caption, card.state, card.tone)
+        self._strip(painter, card, QRectF(LEFT, card.strip_room[0], right - LEFT, card.strip_room[1]))
         for number, warning in enumerate(card.warnings):
-            top = BASE - 4 + LINE * number
+            top = card.base - 4 + LINE * number
             painter.drawPixmap(12, top + 1, icons.pixmap("warning", "warn", 14))
             _text(painter, QRectF(32, top, right - 32, LINE), warning, "text2", fonts.CAPTION)
         painter.restore()
 
     def _picture(self, painter: QPainter, card: Card) -> None:
         picture = self.pictures.get(card.id)
+        box = QRectF(10 + (54 - card.picture) / 2, (card.base - card.picture) / 2, card.picture, card.picture)
         if picture is None or picture.isNull():
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(theme.active().colour("panel"))
-            painter.drawRoundedRect(QRectF(10, 8, PICTURE, PICTURE), 4, 4)
+            painter.drawRoundedRect(box, 4, 4)
         else:
-            painter.drawImage(QRectF(10, 8, PICTURE, PICTURE), picture)
+            painter.drawImage(box, picture)
 
     def _strip(self, painter: QPainter, card: Card, room: QRectF) -> None:
         look = theme.active()
@@ -289,12 +315,14 @@ def _text(
     painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, shown)
 
 
-def _two(painter: QPainter, box: QRectF, left: str, right: str, tone: str) -> None:
-    """A caption, and a state at the right end that gives way where there is no room for both."""
+def _two(painter: QPainter, box: QRectF, left: str, right: str, tone: str, *, strong: bool = False) -> None:
+    """A name or caption, and what is said at the right end: that gives way where there is no room for both."""
     face = fonts.font(fonts.CAPTION)
-    room = box.width() - QFontMetricsF(face).horizontalAdvance(left) - 12
-    _text(painter, box, left, "text3", fonts.CAPTION)
+    size, weight = (fonts.BODY, QFont.Weight.DemiBold) if strong else (fonts.CAPTION, QFont.Weight.Normal)
+    room = box.width() - QFontMetricsF(fonts.font(size, weight)).horizontalAdvance(left) - 12
+    _text(painter, box, left, "text" if strong else "text3", size, weight)
     if right and room > 24:
+        painter.setFont(face)
         shown = QFontMetricsF(face).elidedText(right, Qt.TextElideMode.ElideRight, room)
         painter.setPen(theme.active().colour(tone))
         painter.drawText(box, int(Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight), shown)

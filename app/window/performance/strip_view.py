@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QPoint, QSize, Qt, Signal
-from PySide6.QtGui import (
-    QContextMenuEvent,
-    QHelpEvent,
-    QMouseEvent,
-    QPainter,
-    QPaintEvent,
-    QPixmap,
-    QResizeEvent,
-    QWheelEvent,
-)
-from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+from collections.abc import Sequence
+from typing import Literal
 
-from app.window import theme
+from PySide6.QtCore import QPoint, QSize, Qt, Signal
+from PySide6.QtGui import QContextMenuEvent, QMouseEvent, QPainter
+
+from app.window.performance.keyed_view import PLAIN
 from app.window.performance.strip import (
     HEIGHT,
     BoundaryDrag,
@@ -27,40 +20,42 @@ from app.window.performance.strip import (
     found_at,
 )
 from app.window.performance.strip_paint import paint_boundary, paint_span, paint_strip
+from app.window.performance.time_view import TimeView
 from app.window.timeline.axis import LABELS, Axis
+from app.window.timeline.lanes import RULER
 from app.window.timeline.paint import paint_playhead, paint_ruler
 
 SLACK = 3.0
 SIDEWAYS, HAND = Qt.CursorShape.SizeHorCursor, Qt.CursorShape.PointingHandCursor
 
 
-class StripView(QWidget):
-    """``sought`` asks for a frame, ``chosen`` gives what was clicked, ``chosen_twice`` a texton clicked twice,
+class StripView(TimeView):
+    """Lanes of motions and textons. ``chosen`` gives what was clicked, ``chosen_twice`` a texton clicked twice,
     ``moved`` a boundary's old and new frame at the end of a drag.
     """
 
-    sought = Signal(int)
     chosen = Signal(object)
     chosen_twice = Signal(object)
     moved = Signal(int, int)
     menu_wanted = Signal(object, QPoint)
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__("Structure of the sequence")
         self.strip = Strip()
-        self.axis = Axis(count=2)
-        self.frame = -1
         self.boundary = -1
         self.span: Span | None = None
         self.drag: BoundaryDrag | None = None
         self._grab: float | None = None
         self._seeking = False
-        self._still: QPixmap | None = None
-        self.setMouseTracking(True)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setFixedHeight(HEIGHT)
-        self.setAccessibleName("Structure of the sequence")
+        for step, texton, boundary in (
+            (-1, Qt.Key.Key_Up, Qt.Key.Key_PageUp),
+            (1, Qt.Key.Key_Down, Qt.Key.Key_PageDown),
+        ):
+            self.keys[PLAIN, texton] = lambda step=step: self._next_texton(step)  # type: ignore[misc]
+            self.keys[PLAIN, boundary] = lambda step=step: self.next_boundary(step)  # type: ignore[misc]
+        for key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.keys[PLAIN, key] = lambda: self.chosen_twice.emit(self._here("texton"))
 
     def sizeHint(self) -> QSize:
         """As high as its lanes."""
@@ -78,43 +73,42 @@ class StripView(QWidget):
         self.drag = None
         self.refresh()
 
-    def show_frame(self, frame: int) -> None:
-        """Move the playhead, -1 for none; the lanes are not drawn again unless they have to scroll."""
-        if frame == self.frame:
-            return
-        self.frame = frame
-        if frame >= 0:
-            self._set_axis(self.axis.showing(frame))
-        self.update()
-
     def show_span(self, span: Span | None) -> None:
         """Mark the texton that is chosen."""
         self.span = span
         self.update()
 
-    def refresh(self) -> None:
-        """Draw the lanes anew at the next paint."""
-        self._still = None
-        self.update()
+    # keys --------------------------------------------------------------------------------------------------------
 
-    def show_all(self) -> None:
-        """Show the whole sequence."""
-        self._set_axis(self.axis.whole())
+    def _here(self, kind: Literal["texton", "boundary"]) -> StripHit:
+        """What the keys mean: the boundary that is chosen, or the texton under the playhead."""
+        frame = self.boundary if kind == "boundary" else max(self.frame, 0)
+        motion = self.strip.motion_at(frame)
+        texton = self.strip.motions[motion].texton_at(frame) if motion >= 0 else -1
+        return StripHit(kind if kind == "boundary" or texton >= 0 else "motion", frame, motion, texton)
 
-    def zoom(self, factor: float) -> None:
-        """Zoom in time round the playhead."""
-        frame = max(self.frame, 0)
-        self._set_axis(self.axis.showing(frame).zoomed(factor, self.axis.x(frame)))
+    def _next(self, frames: Sequence[int], here: int, step: int) -> int | None:
+        beyond = [frame for frame in frames if (frame - here) * step > 0]
+        return (min(beyond) if step > 0 else max(beyond)) if beyond else None
 
-    def _set_axis(self, axis: Axis) -> None:
-        if axis != self.axis:
-            self.axis = axis
-            self.refresh()
+    def _next_texton(self, step: int) -> None:
+        """Choose the texton that begins next, or the one before."""
+        starts = [first for motion in self.strip.motions for first, _ in motion.textons]
+        found = self._next(starts, self.frame, step)
+        if found is not None:
+            self.boundary = -1
+            self.sought.emit(found)
+            self.chosen.emit(self._here("texton"))
+            self.update()
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        """Fit the axis to the width."""
-        self.axis = self.axis.sized(self.width(), self.axis.count)
-        self.refresh()
+    def next_boundary(self, step: int) -> None:
+        """Choose the next boundary, or the one before: Ctrl with the arrows moves it then, Delete takes it away."""
+        found = self._next(self.strip.boundaries, self.boundary if self.boundary >= 0 else self.frame, step)
+        if found is not None:
+            self.boundary = found
+            self.sought.emit(found)
+            self.chosen.emit(self._here("boundary"))
+            self.update()
 
     # mouse -------------------------------------------------------------------------------------------------------
 
@@ -182,25 +176,15 @@ class StripView(QWidget):
         return was
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
-        """Ask for what can be done here."""
-        if self.strip.count and event.pos().x() >= LABELS:
+        """Ask for what can be done here; by the keyboard with the boundary that is chosen, or under the playhead."""
+        if not self.strip.count:
+            return
+        if event.reason() == QContextMenuEvent.Reason.Keyboard:
+            found = self._here("boundary" if self.boundary >= 0 else "texton")
+            place = QPoint(round(self.axis.x(found.frame)), RULER + 20)
+            self.menu_wanted.emit(found, self.mapToGlobal(place))
+        elif event.pos().x() >= LABELS:
             self.menu_wanted.emit(self.find(event.pos()), event.globalPos())
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom in time at the mouse; scroll with Shift or sideways."""
-        steps, sideways = event.angleDelta().y(), event.angleDelta().x()
-        if sideways or event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self._set_axis(self.axis.scrolled(-(sideways or steps) / 2))
-        else:
-            self._set_axis(self.axis.zoomed(1.0015**steps, event.position().x()))
-        event.accept()
-
-    def event(self, event: QEvent) -> bool:
-        """Say why a motion is one."""
-        if event.type() == QEvent.Type.ToolTip and isinstance(event, QHelpEvent):
-            QToolTip.showText(event.globalPos(), self.words_at(event.pos()), self)
-            return True
-        return super().event(event)
 
     def words_at(self, place: QPoint) -> str:
         """What is to be said of what lies at a place; empty for nothing."""
@@ -224,22 +208,14 @@ class StripView(QWidget):
 
     # drawing -----------------------------------------------------------------------------------------------------
 
-    def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the kept picture of the lanes, and over it what moves."""
-        ratio = self.devicePixelRatioF()
-        if self._still is None or self._still.size() != self.size() * ratio:
-            self._still = QPixmap(self.size() * ratio)
-            self._still.setDevicePixelRatio(ratio)
-            self._still.fill(theme.active().colour("panel"))
-            painter = QPainter(self._still)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            paint_strip(painter, self.axis, self.strip)
-            if self.strip.count:
-                paint_ruler(painter, self.axis)
-            painter.end()
-        painter = QPainter(self)
-        painter.drawPixmap(0, 0, self._still)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    def paint_still(self, painter: QPainter) -> None:
+        """Draw ruler and lanes."""
+        paint_strip(painter, self.axis, self.strip)
+        if self.strip.count:
+            paint_ruler(painter, self.axis)
+
+    def paint_over(self, painter: QPainter) -> None:
+        """Draw what is chosen or held, and the playhead."""
         if self.span is not None:
             paint_span(painter, self.axis, self.span)
         if self.boundary >= 0 and self.drag is None:
@@ -248,4 +224,3 @@ class StripView(QWidget):
             paint_boundary(painter, self.axis, self.drag.new, "edit")
         if self.frame >= 0 and self.strip.count:
             paint_playhead(painter, self.axis, self.frame, HEIGHT)
-        painter.end()

@@ -43,6 +43,17 @@ class Trial(QObject):
         self._wish = mu
         self._next()
 
+    def look_at(self, number: int) -> None:
+        """Show one of the paths there are before it is chosen; -1 shows the document again."""
+        state = self.state
+        if not 0 <= number < len(state.paths):
+            self.drop()
+            return
+        from app.actions.performing_graph import found
+
+        self.holding = True
+        self._set(found(state.graph, state.paths[number]))
+
     def release(self) -> None:
         """The slider is let go: keep what is shown until the path itself arrives."""
         self.holding = False

@@ -22,6 +22,7 @@ from app.window.performance.graph_panel import HINT, GraphPanel
 from app.window.performance.graph_places import GraphPlaces
 from app.window.performance.library import Library
 from app.window.performance.matrix import Matrix, PreviewSide
+from app.window.performance.parts import Parts
 from app.window.performance.preview import Preview
 from app.window.performance.source_strip import SourceStrip
 from app.window.performance.state import PerformanceState
@@ -62,6 +63,7 @@ class PerformanceWorkspace(Workspace):
         self.library.facts.azimuth = self.preview.azimuth
         self.carried = Carried(self)
         self.crossing = Crossing(self, self.state, self.thumbnails)
+        self.parts = Parts(self)
         self._low = False
         self.errors = self.graph.errors
         self._cards = QTimer(self)
@@ -76,11 +78,11 @@ class PerformanceWorkspace(Workspace):
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
-        base = Panel()
-        base.column.addWidget(self.database)
-        base.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self.base = Panel()
+        self.base.column.addWidget(self.database)
+        self.base.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         column.addWidget(self.library, 1)
-        column.addWidget(base)
+        column.addWidget(self.base)
         self.aside = FoldAway("performance", "Preview")
         self.aside.column.addWidget(self.side)
         self.strip.matrix_wanted.connect(self.aside.unfold)
@@ -93,16 +95,19 @@ class PerformanceWorkspace(Workspace):
 
     def _connect(self) -> None:
         self.editing.told.connect(self._told)
-        self.graph.hint.connect(self.hint)
+        self.graph.hint.connect(lambda _: self.hint.emit(self._hint()))
         self.graph.wanted.connect(self.wanted)
         self.graph.carried.connect(self._carry)
         self.graph.dropped.connect(self._drop)
         self.graph.canvas.crossing.connect(self.crossing.show_edge)
+        self.composed.options.paths.looked_at.connect(self.trial.look_at)
         self.composed.crossing.connect(self.crossing.show_cut)
         self.composed.wanted.connect(self.wanted)
         self.composed.source_wanted.connect(lambda _: self._show_parts())
         self.state.hint.connect(self.hint)
         self.thumbnails.ready.connect(self._drawn)
+        self.preview.view.made.connect(self.parts.chain)
+        self.parts.chain()
 
     def changeEvent(self, event: QEvent) -> None:
         """What is drawn once and kept is drawn anew for another look."""
@@ -183,6 +188,8 @@ class PerformanceWorkspace(Workspace):
     def _show_parts(self) -> None:
         """Where there is no sequence nothing can be composed, and the invitation has the room."""
         there = bool(self.state.document.sequences)
+        self.base.setVisible(there)
+        self.preview.show_controls(there)
         self.composed.setVisible(there)
         self.strip.setVisible(there and self.composed.source.isChecked())
 
@@ -207,7 +214,7 @@ class PerformanceWorkspace(Workspace):
             return "Add a sequence of meshes to begin."
         if self.editing.replacing >= 0:
             return "Double-click the motion that takes the place of the one out of reach. Esc leaves it."
-        return HINT
+        return self.parts.hint() or HINT
 
     def _told(self, sentence: str) -> None:
         self.hint.emit(sentence)
@@ -253,7 +260,9 @@ class PerformanceWorkspace(Workspace):
         handlers: dict[str, Callable[[], object]] = {
             "hide_point": lambda: self.editing.forbid(self.state.node),
             "delete": self._delete,
-            "next_track": self._next_node,
+            "next_track": lambda: self.window().focusNextPrevChild(True),
+            "next_part": lambda: self.parts.go(1),
+            "previous_part": lambda: self.parts.go(-1),
             "nudge_left": lambda: self.editing.move(self.editing.key, self.editing.key - 1),
             "nudge_right": lambda: self.editing.move(self.editing.key, self.editing.key + 1),
             "nudge_up": lambda: self.editing.repeat(self.editing.key, 1),
@@ -266,7 +275,8 @@ class PerformanceWorkspace(Workspace):
             "add_sequence": self.library.show_add_menu,
             "export": self._export,
         }
-        if self.strip.command(name):
+        at_boundary = self.strip.view.hasFocus() or self.matrix.view.hasFocus()
+        if (at_boundary and self.strip.command(name)) or self.preview.command(name):
             return True
         if name == "cancel":
             return self._cancel()
@@ -285,6 +295,7 @@ class PerformanceWorkspace(Workspace):
 
     def _cancel(self) -> bool:
         given_up = [
+            self.strip.view.cancel(),
             self.matrix.view.cancel(),
             self.graph.canvas.cancel(),
             self.composed.view.cancel(),
@@ -296,14 +307,18 @@ class PerformanceWorkspace(Workspace):
         return any(given_up)
 
     def _delete(self) -> None:
-        if self.editing.key >= 0:
-            self.editing.remove(self.editing.key)
-        else:
-            self.hint.emit("Choose a key motion in the timeline to remove it.")
-
-    def _next_node(self) -> None:
-        self.graph.canvas.setFocus(Qt.FocusReason.TabFocusReason)
-        self.graph.canvas.choose_next()
+        """Take away the key motion that is chosen: in the lane, or the last one that the chosen motion is."""
+        keys = self.state.document.performance.keys
+        place = self.editing.key
+        if self.graph.canvas.hasFocus():
+            own = [k for k, key in enumerate(keys) if self.state.motion_node(key.motion) == self.state.node]
+            place = own[-1] if own else -1
+        if place < 0:
+            self.hint.emit("Choose a key motion in the timeline, or a motion with a number, to remove it.")
+            return
+        self.editing.remove(place)
+        if self.composed.view.hasFocus():
+            self.editing.choose(min(place, len(keys) - 2))
 
 
 def _splitter(direction: Qt.Orientation, parts: tuple[QWidget, ...], stretch: tuple[int, ...]) -> QSplitter:
