@@ -82,7 +82,7 @@ def sketch(document: Document, slot: str, turn: str) -> Stage:
     if turn == "second":
         needs += tuple(sketch(document, str(k), "first") for k in range(slots(clip.frame_count)))
     compute = _first if turn == "first" else _second
-    return Stage(name, LABEL, compute, (clip, WIDTH, int(slot)), needs, weight=KEY_SECONDS / 2)
+    return Stage(name, LABEL, compute, (clip, WIDTH, int(slot)), needs, version=2, weight=KEY_SECONDS / 2)
 
 
 @once
@@ -93,7 +93,7 @@ def depth(document: Document) -> Stage:
         return Stage("depth", LABEL, _depth, blocked=tracking.NO_CLIP)
     needs: tuple[Stage, ...] = (plan(document), scene.cameras(document), tracking.masks(document))
     needs += tuple(sketch(document, str(k), "second") for k in range(slots(clip.frame_count)))
-    return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=3, weight=2.0)
+    return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=4, weight=2.0)
 
 
 def slots(frames: int) -> int:

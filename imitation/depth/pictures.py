@@ -65,12 +65,9 @@ class Pictures:
         small: NDArray[np.uint8] = cv2.resize(picture, self.size, interpolation=cv2.INTER_AREA)
         return small
 
-    def grey(self, frame: int) -> NDArray[np.uint8]:
-        """The frame (h, w) in grey levels, working size."""
-        import cv2
-
-        grey: NDArray[np.uint8] = cv2.cvtColor(self.colour(frame), cv2.COLOR_RGB2GRAY)
-        return grey
+    def shown(self, frame: int) -> NDArray[np.uint8]:
+        """The frame (h, w, 3), middle grey where the subject is: its edges are none of the background's."""
+        return np.where(self.hidden(frame)[..., None] > 0, np.uint8(128), self.colour(frame))
 
     def mask(self, frame: int) -> NDArray[np.uint8]:
         """1 on the subject (h, w), 0 elsewhere, working size, not grown."""

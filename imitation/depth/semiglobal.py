@@ -12,14 +12,15 @@ from numpy.typing import NDArray
 from imitation.depth.sweep import bands
 from imitation.progress import Progress, silent
 
-SMALL, LARGE, LEAST = 14, 320, 60  # penalties of a step of one plane, and of a larger one: at no edge, at least
+SMALL, LARGE, LEAST = 14, 800, 60  # penalties of a step of one plane, and of a larger one: at no edge, at least
+FINE = 0.3  # planes a pixel of the picture's width: where there are more, slanted ground makes larger steps
 SOFTENING = 8.0  # grey levels over which the larger penalty halves
 _FAR = 8000  # no path comes from outside the volume
 
 
 def semiglobal(
     volume: NDArray[np.uint8],
-    grey: NDArray[np.uint8],
+    picture: NDArray[np.uint8],
     *,
     small: int = SMALL,
     large: int = LARGE,
@@ -31,7 +32,8 @@ def semiglobal(
     Parameters
     ----------
     volume : (h, w, d) cost of each plane.
-    grey : (h, w) the picture.
+    picture : (h, w, 3); how much two pixels differ is told by the channel that differs most: the edge of a box before
+        a wall as bright as it, but of another colour, is one.
     progress : gets fractions every few rows; may raise ``Cancelled``.
 
     Returns
@@ -39,7 +41,8 @@ def semiglobal(
     float32 (h, w) index of the best plane, with a parabola's fraction.
     """
     steps = np.arange(256, dtype=np.float64)
-    table = np.maximum(large / (1 + steps / SOFTENING), least).round().astype(np.int16)
+    fine = min(1.0, FINE * max(volume.shape[:2]) / volume.shape[2]) ** 1.5
+    table = np.maximum(fine * large / (1 + steps / SOFTENING), least).round().astype(np.int16)
     total = np.zeros(volume.shape, np.uint16)
     height, width, depth = volume.shape
     for half, backward in enumerate((False, True)):
@@ -48,8 +51,8 @@ def semiglobal(
         lowest = np.zeros((2, 3, width), np.int16)
         for first, last in bands(height):
             progress(0.5 * half + 0.5 * first / height)
-            _paths(volume, grey, np.int16(small), table, total, backward, rows, lowest, first, last)
-    plane = np.empty(grey.shape, np.float32)
+            _paths(volume, picture, np.int16(small), table, total, backward, rows, lowest, first, last)
+    plane = np.empty(volume.shape[:2], np.float32)
     _choose(total, plane)
     return plane
 
@@ -71,8 +74,16 @@ def _step(cost: Any, before: Any, least: Any, small: Any, large: Any, after: Any
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _apart(one: Any, other: Any) -> Any:
+    """How many levels two colours differ by, in the channel that differs most."""
+    red, green, blue = (abs(np.int64(one[0]) - other[0]), abs(np.int64(one[1]) - other[1]),
+                        abs(np.int64(one[2]) - other[2]))  # fmt: skip
+    return max(red, green, blue)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _paths(
-    volume: Any, grey: Any, small: Any, table: Any, total: Any, backward: bool, rows: Any, lowest: Any, first: int,
+    volume: Any, picture: Any, small: Any, table: Any, total: Any, backward: bool, rows: Any, lowest: Any, first: int,
     end: int,
 ) -> None:  # fmt: skip
     """Four of the eight paths: along the row, and from the row before, straight and both ways aslant."""
@@ -87,18 +98,19 @@ def _paths(
         least = np.int16(0)
         for j in range(width):
             x = width - 1 - j if backward else j
-            cost, sums, g = volume[y, x], total[y, x], np.int64(grey[y, x])
+            cost, sums, colour = volume[y, x], total[y, x], picture[y, x]
             here, before = along[j % 2], along[1 - j % 2]
             if j == 0:
                 least = _step(cost, start, np.int16(0), small, np.int16(0), here, sums)
             else:
-                least = _step(cost, before, least, small, table[abs(g - np.int64(grey[y, x - way]))], here, sums)
+                edge = table[_apart(colour, picture[y, x - way])]
+                least = _step(cost, before, least, small, edge, here, sums)
             for p in range(3):
                 source = x + p - 1
                 if k == 0 or source < 0 or source >= width:
                     lowest[now, p, x] = _step(cost, start, np.int16(0), small, np.int16(0), rows[now, p, x], sums)
                 else:
-                    large = table[abs(g - np.int64(grey[y - way, source]))]
+                    large = table[_apart(colour, picture[y - way, source])]
                     lowest[now, p, x] = _step(
                         cost, rows[last, p, source], lowest[last, p, source], small, large, rows[now, p, x], sums
                     )

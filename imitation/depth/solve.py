@@ -15,6 +15,7 @@ from imitation.depth.checks import Range, check_input, find_range, range_near
 from imitation.depth.depthmap import DepthMap, resized
 from imitation.depth.lead import lead
 from imitation.depth.pictures import LONGEST, Pictures
+from imitation.depth.plain import with_planes
 from imitation.depth.projection import consensus, projected_inverse
 from imitation.depth.semiglobal import semiglobal
 from imitation.depth.sweep import NEUTRAL, geometry, sweep
@@ -25,6 +26,7 @@ from imitation.progress import Progress, part, silent
 PLANES, PLANES_LARGE = 144, 160
 AVERAGED = 8  # other maps, the nearest in time, that a map is averaged with where they agree
 LEADERS = 10  # other maps, the nearest in time, that lead the second pass
+STRAYED = 3.0  # steps of the search off the plane of a plain surface that the second pass does not believe
 LARGE = 700  # pixels on the longest side from which there are more planes
 
 
@@ -159,6 +161,8 @@ class DepthSolver:
         return np.where(lent, brought, sketch.inverse), np.where(lent, support, count).astype(np.uint8)
 
     def _pass(self, frame: int, keys: Sequence[int], known: Mapping[int, Sketch], progress: Progress) -> Sketch:
+        import cv2
+
         progress(0.0)
         pictures = self.pictures
         views = self.views(frame, keys)
@@ -183,9 +187,12 @@ class DepthSolver:
             layers = [projected_inverse(o.measured, pictures.camera(o.frame), camera, size) for o in others]
             progress(0.76)
             lead(volume, np.stack(layers), planes, 1.0)
-        grey = pictures.grey(frame)
-        grey[pictures.hidden(frame) > 0] = 128  # the subject's edges are none of the background's
-        plane = semiglobal(volume, grey, progress=part(progress, 0.78, 1.0))
+        picture, hidden = pictures.shown(frame), pictures.hidden(frame)
+        calm = cv2.medianBlur(picture, 3)  # single noisy pixels are no edges
+        calm[hidden > 0] = 128
+        plane = semiglobal(volume, calm, progress=part(progress, 0.78, 0.97))
+        # Led by the other maps, single pixels know more than a plane of this frame alone, unless they are far off it.
+        plane = with_planes(plane, volume, picture, hidden, STRAYED if known else 0.0)
         step = float(planes[1] - planes[0])
         chosen = np.rint(plane).astype(np.int64)[..., None]
         seen = ~np.take_along_axis(untold, chosen, axis=2)[..., 0]

@@ -8,7 +8,7 @@ import pytest
 
 from imitation.depth.agreement import agreeing
 from imitation.depth.projection import consensus
-from imitation.depth.semiglobal import LARGE, LEAST, SMALL, SOFTENING, semiglobal
+from imitation.depth.semiglobal import FINE, LARGE, LEAST, SMALL, SOFTENING, semiglobal
 from imitation.depth.sweep import (
     FLOOR,
     GRADIENT,
@@ -111,8 +111,8 @@ def test_semiglobal_matching_against_plain_code() -> None:
     """The plane chosen is the least of the sum over eight paths."""
     random = np.random.default_rng(2)
     volume = random.integers(0, 255, (14, 17, 11)).astype(np.uint8)
-    grey = random.integers(0, 255, (14, 17)).astype(np.uint8)
-    table = np.maximum(LARGE / (1 + np.arange(256) / SOFTENING), LEAST).round()
+    picture = random.integers(0, 255, (14, 17, 3)).astype(np.uint8)
+    table = np.maximum(min(1, FINE * 17 / 11) ** 1.5 * LARGE / (1 + np.arange(256) / SOFTENING), LEAST).round()
     total = np.zeros(volume.shape)
     for dy, dx in ((0, 1), (0, -1), (1, 0), (-1, 0), (1, 1), (1, -1), (-1, 1), (-1, -1)):
         path = np.zeros(volume.shape)
@@ -123,12 +123,12 @@ def test_semiglobal_matching_against_plain_code() -> None:
                 if 0 <= py < 14 and 0 <= px < 17:
                     before = path[py, px]
                     aside = np.pad(before, 1, constant_values=1e9)
-                    large = table[abs(int(grey[y, x]) - int(grey[py, px]))]
+                    large = table[np.abs(picture[y, x].astype(int) - picture[py, px]).max()]
                     least = before.min()
                     step = np.minimum(np.minimum(aside[:-2], aside[2:]) + SMALL, least + large)
                     path[y, x] += np.minimum(before, step) - least
         total += path
-    plane = semiglobal(volume, grey)
+    plane = semiglobal(volume, picture)
     best = total.min(axis=2)
     chosen = np.rint(plane).astype(int)
     # The parabola moves by half a plane at most.
