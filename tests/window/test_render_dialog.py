@@ -333,3 +333,17 @@ def test_nothing_of_the_dialog_is_clipped(shell: Shell, size: tuple[int, int]) -
         assert_whole(dialog)
         for each in dialog.findChildren(QToolButton):
             assert each.text() or (each.toolTip() and each.accessibleName()), name
+
+
+def test_a_list_of_the_dialog_keeps_its_keys(measured: Shell) -> None:
+    """With the keys in a list, Down chooses in it and goes to no other click in time."""
+    dialog = opened(measured)
+    form, frame = dialog.film.options.form, measured.project.frame
+    form.setFocus()
+    before = form.currentIndex()
+    QTest.keyClick(form, Qt.Key.Key_Down)
+    assert form.currentIndex() == before + 1
+    assert measured.project.frame == frame
+    QTest.keyClick(form, Qt.Key.Key_Up)
+    assert form.currentIndex() == before
+    dialog.close()

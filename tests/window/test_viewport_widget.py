@@ -104,7 +104,6 @@ def test_many_changes_are_drawn_once(view: Viewport) -> None:
 
 def test_leaving_out_what_faces_away_changes_no_pixel(view: Viewport, ball: tuple[np.ndarray, np.ndarray]) -> None:
     """A closed ball looks the same drawn whole; of an open one the inside is drawn also while it moves."""
-
     window, pixels = view.host.stage.render_window, vtkUnsignedCharArray()
 
     def pictures() -> list[np.ndarray]:

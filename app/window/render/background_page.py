@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtWidgets import QComboBox
-
 from app.actions import rendering
-from app.window.controls import Row, ScrollColumn, label
+from app.window.controls import Chooser, Row, ScrollColumn, label
 from app.window.project import Project
 from app.window.render.choices import remember_text, remembered_text
-from app.window.render.page import VIDEO, WIDE, Page, narrow
+from app.window.render.page import VIDEO, WIDE, Page
 from imitation.progress import Progress
 
 KINDS: tuple[tuple[str, str, str, str], ...] = (
@@ -35,7 +33,7 @@ class BackgroundPage(Page):
     def __init__(self, project: Project) -> None:
         self.options = ScrollColumn()
         super().__init__(project, self.options, "background", "Write")
-        self.kind = narrow(QComboBox(), "What is written of the background")
+        self.kind = Chooser(name="What is written of the background")
         for text, *rest in KINDS:
             self.kind.addItem(text, tuple(rest))
         stored = remembered_text("background", KINDS[0][0])

@@ -30,6 +30,7 @@ class FilmChoices:
     occlusion: bool = True
     shadow: bool = True
     plate: bool = True
+    remove_shadow: bool = False
     match_light: bool = True
     light_turn: float = 0.0
     light_lift: float = 0.0
@@ -54,6 +55,7 @@ class FilmChoices:
             occlusion=self.occlusion,
             shadow=self.shadow,
             plate=self.plate and not self.alpha,
+            remove_shadow=self.remove_shadow and self.plate and not self.alpha,
             match_light=self.match_light,
             shutter=self.shutter / 100 if self.blurred else 0.0,
             grain=None if self.grain else 0.0,

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import attrs
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QCheckBox, QComboBox, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 
 from app.model.character import Character
-from app.window.controls import NumberField, NumberRange, Row, ScrollColumn, label, separator
+from app.window.controls import Chooser, NumberField, NumberRange, Row, ScrollColumn, label, separator
 from app.window.render.choices import remember, remembered
-from app.window.render.page import WIDE, narrow
+from app.window.render.page import WIDE
 
 FORMS = (("Film (mp4)", "film"), ("PNG with alpha", "png"), ("EXR with alpha", "exr"))
 VIEWS = (("Over the video", "video"), ("From the side", "side"), ("Both, side by side", "both"))
@@ -19,6 +19,10 @@ SWITCHES: dict[str, tuple[str, str]] = {
     "occlusion": ("Hidden by what stands before it", "What of the background is nearer hides the characters"),
     "shadow": ("Shadow on the background", "Their shadow falls on the measured background, steps and walls too"),
     "plate": ("Take the subject out", "The filmed subject is replaced by the background behind it"),
+    "remove_shadow": (
+        "Take its shadow out too",
+        "Where a frame is darker beside the subject than other frames show it",
+    ),
     "match_light": ("Light matched to the clip", "Direction, strength and colour of the light as in the background"),
     "blurred": ("Motion blur", "Blurred by their own motion while the shutter is open"),
     "grain": ("Grain of the film", "As much noise as the film has"),
@@ -35,7 +39,7 @@ NUMBERS: dict[str, tuple[str, NumberRange]] = {
     "dim": ("Fade the film", NumberRange(0, 100, 1, 0, "%", 0)),
 }
 GROUPS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("In the scene", ("occlusion", "shadow", "plate")),
+    ("In the scene", ("occlusion", "shadow", "plate", "remove_shadow")),
     ("Light", ("match_light", "light_turn", "light_lift", "brightness", "warmth", "shadow_strength")),
     ("Look of the film", ("blurred", "shutter", "grain", "dim", "points")),
 )
@@ -50,14 +54,12 @@ class FilmOptions(ScrollColumn):
         super().__init__()
         self.choices = remembered()
         self.characters: dict[str, QCheckBox] = {}
-        self.form = QComboBox()
-        self.view = QComboBox()
+        self.form, self.view = Chooser(name="What is written"), Chooser(name="Which view")
         for text, value in FORMS:
             self.form.addItem(text, value)
         for text, kind in VIEWS:
             self.view.addItem(text, kind)
-        for box, name, words in ((self.form, "form", "What is written"), (self.view, "view", "Which view")):
-            narrow(box, words)
+        for box, name in ((self.form, "form"), (self.view, "view")):
             box.setCurrentIndex(max(box.findData(getattr(self.choices, name)), 0))
             box.currentIndexChanged.connect(lambda _, box=box, name=name: self._set(name, box.currentData()))
         self.rows.addWidget(Row("Write", self.form, width=WIDE))
@@ -157,6 +159,7 @@ class FilmOptions(ScrollColumn):
             line.setEnabled(filmed)
         for name in ("plate", "dim", "points"):
             self.lines[name].setEnabled(film and filmed)
+        self.lines["remove_shadow"].setEnabled(film and filmed and chosen.plate)
         self.lines["shutter"].setEnabled(filmed and chosen.blurred)
         self.lines["ranged"].setEnabled(True)
         self.range_row.setEnabled(chosen.ranged)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtWidgets import QCheckBox, QComboBox
+from PySide6.QtWidgets import QCheckBox
 
 from app.actions import rendering
 from app.actions.films import COMPARISONS
 from app.actions.rendering import FilmOrder
 from app.model.character import Character
 from app.window import files
-from app.window.controls import Row, ScrollColumn, label
+from app.window.controls import Chooser, Row, ScrollColumn, label
 from app.window.project import Project
 from app.window.render.choices import remember_text, remembered_text
-from app.window.render.page import VIDEO, WIDE, Page, narrow
+from app.window.render.page import VIDEO, WIDE, Page
 from imitation.progress import Progress
 
 NEED_POSE = ("naive_tracks", "key_poses")
@@ -36,7 +36,7 @@ class OfOneCharacter(Page):
         said = label(words, "label")
         said.setWordWrap(True)
         self.options.rows.addWidget(said)
-        self.chooser = narrow(QComboBox(), "Character")
+        self.chooser = Chooser(name="Character")
         self.chooser.currentIndexChanged.connect(lambda _: self._shown and self.refresh())
         self.options.rows.addWidget(Row("Character", self.chooser, width=WIDE))
         self._shown: tuple[tuple[str, str], ...] = ()
@@ -132,7 +132,7 @@ class MotionPage(OfOneCharacter):
     def __init__(self, project: Project) -> None:
         words = "The moving mesh for other programs, frame by frame at the clip's frame rate."
         super().__init__(project, "motion", "Export", words)
-        self.form = narrow(QComboBox(), "Form of the file")
+        self.form = Chooser(name="Form of the file")
         for text, form, suffix in FORMS:
             self.form.addItem(text, (form, suffix))
         stored = remembered_text("form", FORMS[0][1])

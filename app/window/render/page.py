@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.window.controls import Panel, ScrollColumn
 from app.window.project import Project
@@ -50,11 +50,3 @@ class Page(QWidget):
     def close_calls(self, *, wait: bool) -> None:
         """End the thread of the preview; ``wait`` until it has ended."""
         self.preview.close_calls(wait=wait)
-
-
-def narrow(box: QComboBox, words: str) -> QComboBox:
-    """A chooser that takes the room there is, however long its lines are; ``words`` say what it chooses."""
-    box.setAccessibleName(words)
-    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-    box.setMinimumContentsLength(8)
-    return box
