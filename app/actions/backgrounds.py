@@ -20,8 +20,11 @@ from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
 
-def solved_background(session: Session) -> tuple[Background, World]:
-    """Give the background of the clip in the user's world; its depth must have been computed."""
+def solved_background(session: Session, *, shadows: bool = False) -> tuple[Background, World]:
+    """Give the background of the clip in the user's world; its depth must have been computed.
+
+    ``shadows``: its plates are without the subject's own shadow too.
+    """
     stages = session.stages
     maps: Any = session.ready(stages.depth)
     cameras, masks, world = (session.ready(stage) for stage in (stages.cameras, stages.masks, stages.world))
@@ -29,7 +32,7 @@ def solved_background(session: Session) -> tuple[Background, World]:
         raise InputError("The background has no depth yet: run depth first.")
     held = masks if isinstance(masks, Masks) else None
     placed = [map_in_world(each, world) for each in maps]
-    return background(session.frames(), placed, world.cameras, held), world
+    return background(session.frames(), placed, world.cameras, held, shadows=shadows), world
 
 
 def false_colour(depth: NDArray[np.floating], near: float, far: float) -> Picture:
@@ -74,9 +77,14 @@ def write_background_mesh(session: Session, target: Path) -> tuple[int, int]:
     return len(mesh.vertices), len(mesh.faces)
 
 
-def plate_film(session: Session, target: Path, *, progress: Progress | None = None) -> tuple[float, float]:
-    """Write the clip without its subject; gives the share of the holes that other frames filled, mean and least."""
-    known, _ = solved_background(session)
+def plate_film(
+    session: Session, target: Path, *, shadows: bool = False, progress: Progress | None = None
+) -> tuple[float, float]:
+    """Write the clip without its subject; gives the share of the holes that other frames filled, mean and least.
+
+    ``shadows``: without the subject's own shadow too.
+    """
+    known, _ = solved_background(session, shadows=shadows)
     count, report = len(known.pictures), progress or silent
     shares: list[float] = []
 

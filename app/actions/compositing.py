@@ -41,7 +41,7 @@ class Standing:
     Attributes
     ----------
     occlusion : what stands before them hides them. shadow : their shadow falls on the measured background.
-    plate : the filmed subject is taken out.
+    plate : the filmed subject is taken out. remove_shadow : and the shadow that it casts, where it can be told.
     match_light : their light is guessed from the background's brightness and colour.
     shutter : share of the frame time that the shutter is open, 0 for sharp pictures.
     grain : grey levels of noise over them; None: as much as the film has.
@@ -53,6 +53,7 @@ class Standing:
     occlusion: bool = False
     shadow: bool = False
     plate: bool = False
+    remove_shadow: bool = False
     match_light: bool = False
     shutter: float = 0.0
     grain: float | None = 0.0
@@ -120,7 +121,7 @@ class Composition:
         from imitation.rendering import Renderer, grain_of
 
         world, film = solved_world(session), session.frames()
-        background = _background(session) if standing.needs_depth else None
+        background = _background(session, standing) if standing.needs_depth else None
         look = _look(standing, world, film, background)
         renderers = [Renderer(m.faces, film.size, colors=m.colors, look=look, up=world.normal) for m in motions]
         grain = standing.grain
@@ -195,10 +196,10 @@ def composited(session: Session, character_ids: Sequence[str], frame: int, stand
     return Composition.of(session, animated(session, character_ids), standing).frame(frame)
 
 
-def _background(session: Session) -> Background:
+def _background(session: Session, standing: Standing) -> Background:
     from app.actions.backgrounds import solved_background
 
-    return solved_background(session)[0]
+    return solved_background(session, shadows=standing.plate and standing.remove_shadow)[0]
 
 
 def _look(standing: Standing, world: World, film: Any, background: Background | None) -> Look:

@@ -93,7 +93,7 @@ class Previewer:
 
     def _remembered(self, session: Session, known: Background) -> Any:
         stages = session.stages
-        key = (stages.depth.key, stages.world.key, stages.masks.key)
+        key = (stages.depth.key, stages.world.key, stages.masks.key, str(known.shadows))
         if self._background is None or self._background[0] != key:
             self._background = (key, Remembered(known))
         return self._background[1]

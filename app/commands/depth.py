@@ -58,15 +58,16 @@ def depth(console: Console, project: Path, folder: Path | None, mesh: Path | Non
 @click.command()
 @PROJECT
 @click.argument("target", type=PATH)
+@click.option("--remove-shadow", is_flag=True, help="Take the shadow out too that the subject casts.")
 @click.pass_obj
-def plate(console: Console, project: Path, target: Path) -> None:
+def plate(console: Console, project: Path, target: Path, remove_shadow: bool) -> None:
     """Film the clip without its subject, as an mp4."""
     from app.actions.backgrounds import plate_film
 
     with closing(Session.open(project)) as session:
         console.compute(session, "Measuring the background", (session.stages.depth, session.stages.world))
         with console.progress("Clean plates") as bar:
-            mean, least = plate_film(session, target, progress=bar)
+            mean, least = plate_film(session, target, shadows=remove_shadow, progress=bar)
         console.answer(
             {"film": str(target), "filled": mean, "filled_least": least},
             [f"Wrote {target}: behind the subject {100 * mean:.1f} % from other frames, {100 * least:.1f} % at least"],

@@ -31,6 +31,7 @@ CHARACTER = click.option("--character", "name", help="Which character, where the
 @click.option("--occlusion", is_flag=True, help="Let what stands before the characters hide them.")
 @click.option("--shadow", is_flag=True, help="Let their shadow fall on the measured background.")
 @click.option("--plate", is_flag=True, help="Take the filmed subject out.")
+@click.option("--remove-shadow", is_flag=True, help="With --plate: take the shadow out too that the subject casts.")
 @click.option("--match-light", is_flag=True, help="Light them as the background is lit.")
 @click.option(
     "--motion-blur", "shutter", type=click.FloatRange(0, 1), is_flag=False, flag_value=SHUTTER, default=0.0,
@@ -54,6 +55,8 @@ def render(
     characters and shadows alone.
     """
     standing = Standing(grain=None if grain else 0.0, **scene)
+    if standing.remove_shadow and not standing.plate:
+        raise click.UsageError("--remove-shadow takes out the shadow of what --plate takes out: give both.")
     if form == "exr" and not target.suffix:
         need_exr()
     if form and target.suffix:

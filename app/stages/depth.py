@@ -125,11 +125,13 @@ def map_in_world(each: DepthMap, world: World) -> DepthMap:
     )  # fmt: skip
 
 
-def background(frames: Any, maps: list[DepthMap], cameras: CameraPath, masks: Masks | None) -> Background:
-    """What is known of the background, ready to give any frame's depth and plate."""
+def background(
+    frames: Any, maps: list[DepthMap], cameras: CameraPath, masks: Masks | None, *, shadows: bool = False
+) -> Background:
+    """What is known of the background, ready to give any frame's depth and plate; see ``Background``."""
     from imitation.depth import Background
 
-    return Background(frames, cameras, maps, masks=masks, longest=BEHIND)
+    return Background(frames, cameras, maps, masks=masks, longest=BEHIND, shadows=shadows)
 
 
 def _plan(context: Context, inputs: tuple[Clip, int], cameras: CameraPath, masks: Masks | None) -> Plan:

@@ -12,19 +12,21 @@ from numpy.typing import ArrayLike, NDArray
 from imitation.cameras.path import CameraPath
 from imitation.depth.colours import choose_depth, gains, gather
 from imitation.depth.depthmap import DepthMap, resized, scaled_camera
+from imitation.depth.filling import extended, nearest_of, seamless, touched, voted
 from imitation.depth.pictures import GROWTH, Pictures
 from imitation.depth.projection import consensus, inverse_of, projected_inverse
 from imitation.depth.rim import between_parts, depth_along
+from imitation.depth.shadow import DARK, darkest_round, round_subject, shadow_of
 from imitation.depth.sharpness import LEAST, blurred_alike, sharp_first, speeds
 from imitation.errors import InputError
 from imitation.geometry.projection import Array, Camera
 
 SOURCES = 10  # key frames whose depth is brought to a frame
 DONORS = 28  # frames whose colours are looked at, near ones first
+APART = 6  # frames: from nearer ones what lies in the subject's shadow is not taken, it is there in them too
 NEAREST = 8  # of them that see a place give its colour
 GROUND = 480  # pixels on the longest side at which depth under a shadow is brought over: shadows are soft
 KEPT = 4  # depths of other frames that stay in memory
-SEAM = 1.5  # pixels over which the fill blends into the frame, at a width of 960
 
 
 @attrs.frozen(eq=False)
@@ -58,6 +60,7 @@ class Background:
     masks : sequence of bool (h, w), True on the subject and its shadow, or None.
     longest : pixels on the longest side at which depth behind the subject is chosen: half as many again as those at
         which it was measured serve nearly as well as all. None: as large as the frames. Colours are never reduced.
+    shadows : plates are without the subject's own shadow too, where the masks leave it out.
     """
 
     def __init__(
@@ -68,6 +71,7 @@ class Background:
         *,
         masks: Sequence[Any] | None = None,
         longest: int | None = None,
+        shadows: bool = False,
     ) -> None:
         if not maps:
             raise InputError("A background needs the depth of at least one frame.")
@@ -79,6 +83,7 @@ class Background:
             raise InputError(
                 f"The depth maps are {self.maps[0].depth.shape[::-1]} pixels, but the frames are {self.pictures.size}."
             )
+        self.shadows = shadows
         self._chosen_at, self._ground_at = self._reduced(longest), self._reduced(GROUND)
         self._last: tuple[DepthMap, ...] = ()  # depths asked for last, of no key frame: their plates ask again
         self._inverse: dict[tuple[int, int, tuple[int, int]], NDArray[np.float32]] = {}
@@ -122,8 +127,16 @@ class Background:
         rows, columns = np.nonzero(wanted)
         found = self._behind(frame, wanted, stack, hidden, poses, scale)[rows, columns]
 
-        def coloured(rows: NDArray[np.int64], columns: NDArray[np.int64], at: NDArray[np.float32]) -> Any:
-            return gather(rows, columns, at, self.camera(frame), stack, hidden, poses, scale, NEAREST)
+        def coloured(
+            rows: NDArray[np.int64], columns: NDArray[np.int64], at: NDArray[np.float32], least: int = 0,
+            pictures: NDArray[np.uint8] = stack,
+        ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:  # fmt: skip
+            """Colours in the nearest frames that are farther away than ``least``."""
+            use = [k for k, donor in enumerate(donors) if abs(donor - frame) > least] or list(range(len(donors)))
+            lent = (pictures, hidden, poses, scale)
+            if len(use) < len(donors):
+                lent = pictures[use], hidden[use], [poses[k] for k in use], scale[use]
+            return gather(rows, columns, at, self.camera(frame), *lent, NEAREST)
 
         colour, seen = coloured(rows, columns, found)
         inverse[rows, columns] = found
@@ -136,11 +149,16 @@ class Background:
             fill = blurred_alike(picture, fill, hole, known, inverse, self.pictures.cameras, frame, coloured)
         filled = np.zeros_like(hole)
         filled[rows[painted], columns[painted]] = True
+        if self.shadows:
+            shaded, bare = self._shadow(frame, picture, hole, filled, inverse, stack, coloured)
+            dimmed = filled & (fill.sum(axis=-1) < DARK * bare.sum(axis=-1))
+            fill[shaded | dimmed] = bare[shaded | dimmed]
+            hole, filled = hole | shaded, filled | shaded
         invented = hole & ~filled
         done: NDArray[np.uint8] = np.clip(np.rint(fill), 0, 255).astype(np.uint8)
         if invented.any():
             done = cv2.inpaint(done, invented.astype(np.uint8), 5, cv2.INPAINT_TELEA)
-        done = _seamless(picture, done, hole)
+        done = seamless(picture, done, hole)
         support = np.where(hole, 0, own.confidence).astype(np.uint8)
         support[rows[painted], columns[painted]] = np.minimum(seen[painted], 255)
         inverse = self._carried_on(inverse, invented, self._chosen_at)
@@ -157,10 +175,10 @@ class Background:
         weak = ~np.isfinite(own.depth) | (own.confidence == 0)
         if not weak.any():
             return own
-        small = _touched(weak, self._ground_at)
+        small = touched(weak, self._ground_at)
         layers = np.stack([self._brought(each, frame, 1, self._ground_at, small) for each in self._spread(frame)])
         brought, votes = consensus(layers, self.tolerance)
-        found, votes = self._enlarged(brought), _nearest_of(votes, self.pictures.size)
+        found, votes = self._enlarged(brought), nearest_of(votes, self.pictures.size)
         with np.errstate(divide="ignore"):
             inverse = np.nan_to_num(1 / own.depth, nan=0.0).astype(np.float32)
         taken = weak & (found > 0)
@@ -244,8 +262,8 @@ class Background:
         missing = hole | (inverse <= 0)
         if not missing.any():
             return inverse
-        small = _touched(hole, size)
-        around = self._enlarged(_extended(_nearest_of(inverse, size), small, small))
+        small = touched(hole, size)
+        around = self._enlarged(extended(nearest_of(inverse, size), small, small))
         return np.where(missing, around, inverse).astype(np.float32)
 
     def _map(self, frame: int, inverse: NDArray[np.float32], support: NDArray[np.uint8]) -> DepthMap:
@@ -278,6 +296,26 @@ class Background:
         spared = between_parts(picture, mask, hidden, GROWTH * max(self.pictures.size))
         return (hidden > 0) & ~spared, depth_along(inverse, picture, (hidden > 0) & (mask == 0), spared)
 
+    def _shadow(
+        self, frame: int, picture: NDArray[np.uint8], hole: NDArray[np.bool_], filled: NDArray[np.bool_],
+        inverse: NDArray[np.float32], stack: NDArray[np.uint8], coloured: Any,
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:  # fmt: skip
+        """Where the subject's own shadow lies beside the hole, and what farther frames show (h, w, 3), 0 if none."""
+        bare, darkest = np.zeros(picture.shape, np.float32), np.zeros(picture.shape, np.float32)
+        known, box = np.zeros_like(hole), round_subject(self.pictures.mask(frame))
+        asked = filled.copy()
+        asked[box] |= ~hole[box] & (inverse[box] > 0)
+        rows, columns = np.nonzero(asked)
+        colour, seen = coloured(rows, columns, inverse[asked], APART)
+        known[rows, columns] = seen >= 3
+        bare[rows, columns] = colour * (seen >= 3)[:, None]
+        lowest = np.stack([darkest_round(each) for each in stack])
+        darkest[rows, columns], _ = coloured(rows, columns, inverse[asked], APART, lowest)
+        shaded, subject = np.zeros_like(hole), hole[box].astype(np.uint8)
+        beside = known[box] & ~hole[box]
+        shaded[box] = shadow_of(picture[box], bare[box], darkest[box], beside, subject, picture.shape[1])
+        return shaded & known & ~hole, bare
+
     def _behind(
         self,
         frame: int,
@@ -289,7 +327,7 @@ class Background:
     ) -> NDArray[np.float32]:
         """Inverse depth (h, w) of the pixels wanted, 0 where none is found."""
         sources, size = self._spread(frame), self._chosen_at
-        small = _touched(wanted, size)
+        small = touched(wanted, size)
         rows, columns = np.nonzero(small)
         loose, firm = (
             np.stack([self._brought(each, frame, least, size, small)[rows, columns] for each in sources], axis=1)
@@ -302,7 +340,7 @@ class Background:
             self.tolerance, known, knowing,
         )  # fmt: skip
         found = np.zeros(size[::-1], np.float32)
-        found[rows, columns] = _voted(inverse, rows, columns, size, self.tolerance)
+        found[rows, columns] = voted(inverse, rows, columns, size, self.tolerance)
         return self._enlarged(found)
 
     def _spread(self, frame: int) -> list[DepthMap]:
@@ -312,79 +350,3 @@ class Background:
         rest = order[SOURCES // 2 :]
         step = max(1, -(-len(rest) // (SOURCES - len(near))))
         return near + rest[::step]
-
-
-def _nearest_of(values: NDArray[Any], size: tuple[int, int]) -> NDArray[Any]:
-    """Values (h, w) at another size: each pixel takes the nearest one's."""
-    import cv2
-
-    if values.shape == size[::-1]:
-        return values
-    made: NDArray[Any] = cv2.resize(values, size, interpolation=cv2.INTER_NEAREST_EXACT)
-    return made
-
-
-def _touched(wanted: NDArray[np.bool_], size: tuple[int, int]) -> NDArray[np.bool_]:
-    """Which pixels of a smaller size hold anything of what is wanted."""
-    import cv2
-
-    if wanted.shape == size[::-1]:
-        return wanted
-    touched: NDArray[np.bool_] = cv2.resize(wanted.astype(np.float32), size, interpolation=cv2.INTER_AREA) > 0
-    return touched
-
-
-def _voted(
-    inverse: NDArray[np.float32],
-    rows: NDArray[np.int64],
-    columns: NDArray[np.int64],
-    size: tuple[int, int],
-    tolerance: float,
-) -> NDArray[np.float32]:
-    """Take single pixels that stand out from their surroundings back into them: the median of 5 x 5 known ones."""
-    import cv2
-
-    picture = np.zeros(size[::-1], np.float32)
-    picture[rows, columns] = inverse
-    middle = cv2.medianBlur(picture, 5)[rows, columns]
-    stray = (inverse > 0) & (middle > 0) & (np.abs(inverse - middle) > 2 * tolerance)
-    empty = (inverse <= 0) & (middle > 0)
-    return np.where(stray | empty, middle, inverse).astype(np.float32)
-
-
-def _seamless(picture: NDArray[np.uint8], filled: NDArray[np.uint8], hole: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Blend a fill into the frame along the hole's rim, inside the hole."""
-    import cv2
-
-    if not hole.any():
-        return picture
-    inside = cv2.distanceTransform(hole.astype(np.uint8), cv2.DIST_L2, 3)
-    width = SEAM * max(hole.shape) / 960
-    alpha = np.clip(inside / width, 0, 1)[..., None]
-    mixed: NDArray[np.uint8] = np.rint(picture + alpha * (filled.astype(np.float32) - picture)).astype(np.uint8)
-    return mixed
-
-
-def _extended(inverse: NDArray[np.float32], hole: NDArray[np.bool_], weak: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Depth where no view has any: from around, smoothly.
-
-    What is ``weak``, confirmed by no other frame, stays but is not carried on: beside a hole it is often a guess.
-    """
-    import cv2
-
-    missing = hole | (inverse <= 0)
-    if not missing.any() or missing.all():
-        return inverse
-    silent = missing if (missing | weak).all() else missing | weak
-    known = np.where(silent, 0, inverse).astype(np.float32)
-    weight = (~silent).astype(np.float32)
-    result = np.where(missing, 0, inverse).astype(np.float32)
-    open_ = missing.copy()
-    radius = 2.0
-    while open_.any() and radius < 4 * max(inverse.shape):
-        total, share = cv2.GaussianBlur(known, (0, 0), radius), cv2.GaussianBlur(weight, (0, 0), radius)
-        here = open_ & (share > 0.02)
-        result[here] = total[here] / share[here]
-        open_ &= ~here
-        radius *= 2
-    return result

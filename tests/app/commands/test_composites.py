@@ -53,6 +53,19 @@ def test_each_option_changes_the_film_in_its_way(measured: Path, tmp_path: Path)
         assert (off > 12).mean() < 0.25, "most of the picture stays as it was filmed"
 
 
+def test_the_shadow_goes_with_the_subject(measured: Path, tmp_path: Path) -> None:
+    """Only with the plate; then the order's option reaches the background that makes the plates."""
+    target = tmp_path / "film.mp4"
+    assert run(["--quiet", "render", str(measured), str(target), "--remove-shadow"]) == USAGE
+    with closing(Session.open(measured)) as session:
+        motions = animated(session, [session.document.characters[0].id])
+        for plate, asked in ((True, True), (True, False), (False, True)):
+            scene = Composition.of(session, motions, Standing(shadow=True, plate=plate, remove_shadow=asked))
+            assert scene.background is not None
+            assert scene.background.shadows == (plate and asked)
+    assert run(["--quiet", "plate", str(measured), str(target), "--remove-shadow"]) == DONE
+
+
 def test_a_folder_gets_characters_and_shadows_with_alpha(measured: Path, tmp_path: Path) -> None:
     """One PNG a frame: clear round the character, opaque on it, black and partly clear in its shadow."""
     folder = tmp_path / "sheets"
