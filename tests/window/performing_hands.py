@@ -115,6 +115,12 @@ def hands(analysed: Path, tmp_path: Path, open_shell: Callable[[Session], Shell]
     return made
 
 
+def give_keys(shell: Shell) -> None:
+    """Make the window the one with the keys: where there is no screen a menu or a tooltip takes them for good."""
+    shell.activateWindow()
+    wait_for(shell.isActiveWindow)
+
+
 def entries(shell: Shell) -> int:
     """How many entries the history has up to the present."""
     assert shell.project is not None

@@ -22,7 +22,7 @@ from app.window.performance.strip import BOX
 from app.window.shell import Shell
 from app.window.timeline.lanes import RULER
 from tests.window.conftest import at, drag, hover, settle, wait_for
-from tests.window.performing_hands import JACK, LEFT, MARCH, SQUAT, WALK, PerformingHands
+from tests.window.performing_hands import JACK, LEFT, MARCH, SQUAT, WALK, PerformingHands, give_keys
 from tests.window.session_hands import CONTROL, Hands
 from tests.window.small_performance import FPS, write_take
 
@@ -42,9 +42,8 @@ def drop_on(widget: QWidget, path: Path) -> None:
 
 
 def take_back(hands: PerformingHands) -> None:
-    """Ctrl+Z; where there is no screen a tooltip takes the keys away, and nobody gives them back."""
-    hands.shell.activateWindow()
-    wait_for(hands.shell.isActiveWindow)
+    """Ctrl+Z."""
+    give_keys(hands.shell)
     hands.press(Qt.Key.Key_Z, CONTROL)
 
 
@@ -77,8 +76,7 @@ def correct_the_motions(hands: PerformingHands) -> None:
     assert not state.document.sequence(gym.id).structure.force_cyclic
     wait_for(lambda: state.fresh and len(hands.canvas.picture.nodes) == 4 and not hands.shell.project.progress, 60)
     settle(50)
-    hands.shell.activateWindow()
-    wait_for(hands.shell.isActiveWindow)
+    give_keys(hands.shell)
 
 
 def choose_another_size(hands: PerformingHands) -> None:
