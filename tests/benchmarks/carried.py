@@ -52,7 +52,10 @@ def _carried(
 
     cut = blend.cut
     sequence, frame = graph.nodes[cut.source].sequence, cut.leave + 1 + position - cut.position
-    vertices = performance.place(cut.position - 1, np.asarray(mesh_of(sequence, frame)[0]))
-    joints = performance.place(cut.position - 1, joints_of(sequence, frame))
+    stands = cut.position - 1
+    if blend.backwards:
+        sequence, frame, stands = graph.nodes[cut.target].sequence, cut.enter + position - cut.position, cut.position
+    vertices = performance.place(stands, np.asarray(mesh_of(sequence, frame)[0]))
+    joints = performance.place(stands, joints_of(sequence, frame))
     near = cKDTree(vertices).query(joints, k=12)[1]
     return np.asarray(joints + (blend.shapes[position].vertices - vertices)[near].mean(axis=1))

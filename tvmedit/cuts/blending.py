@@ -22,6 +22,10 @@ Colours = NDArray[np.uint8]
 MeshSource = Callable[[int, int], Sequence[Any]]
 """(sequence, frame) to (vertices (v, 3), faces (m, 3)) or (vertices, faces, colours (v, 3) uint8), as captured."""
 SECONDS = 0.3
+LONGER = 2.0
+"""A blend lasts at most so many times as long as asked."""
+SPEED = 0.35
+"""Body heights a second by which a blend may move the body on average; more makes it longer."""
 FEWEST = 3
 """A blend of fewer good frames is refused."""
 
@@ -50,6 +54,8 @@ class Blend:
         Of each registration tried, by position.
     reason : str
         Why it is refused, or why it is shorter than asked; empty otherwise.
+    backwards : bool
+        Whether the shapes are those of the clip that is entered, deformed back towards the one that is left.
     """
 
     cut: Cut
@@ -58,6 +64,7 @@ class Blend:
     step_after: float
     residuals: dict[int, float]
     reason: str = ""
+    backwards: bool = False
 
 
 def blend_cut(
@@ -74,8 +81,10 @@ def blend_cut(
 
     Around the cut both clips are there: the one that is left goes on beyond its last frame, the one entered begins
     before its first. Each of the window's frames is the first clip's mesh deformed towards the second's, by a share
-    that rises smoothly. Registration starts at the cut, where the two are most alike, and runs outwards; frames where
-    it fails end the window on that side. Colours pass from one clip's to the nearest ones of the other.
+    that rises smoothly; or the second's towards the first's, where only that is possible (a hand that lies on a hip
+    cannot be torn off, one that is free can be laid there). Registration starts at the cut, where the two are most
+    alike, and runs outwards; frames where it fails end the window on that side. Colours pass from one clip's to the
+    nearest ones of the other.
 
     Parameters
     ----------
@@ -87,7 +96,7 @@ def blend_cut(
     mesh_of : callable
         Gives the captured mesh of (sequence, frame).
     seconds : float
-        Length of the window.
+        Length of the window; up to twice as long where the body has further to go than looks natural in that time.
     iterations : int
         Of the first registration; the others start from it and take a third as many.
     progress : callable, optional
@@ -112,35 +121,57 @@ def blend_cut(
     found: dict[int, Registration] = {}
     tried: dict[int, float] = {}
     reason = ""
-    outwards = [list(range(centre, last + 1)), list(range(centre - 1, first - 1, -1))]
-    total, done = last - first + 1, 0
-    for side in outwards:
-        start = found.get(centre)
-        for k in side:
-            report(done / total)
-            done += 1
-            source, target = pairs.shapes(k)
-            registration = register(
-                (source.vertices, source.faces),
-                (target.vertices, target.faces),
-                height=pairs.height,
-                edge=pairs.edge,
-                iterations=iterations if start is None else max(4, iterations // 3),
-                start=start,
-            )
-            tried[cut.position + k] = registration.residual
-            if registration.reason:
-                reason = reason or registration.reason
-                break
-            found[k] = start = registration
+    done = 0
+
+    def registered(k: int, start: Registration | None, backwards: bool) -> Registration | None:
+        nonlocal reason, done
+        report(min(done / (last - first + 1), 1.0))
+        done += 1
+        source, target = reversed(pairs.shapes(k)) if backwards else pairs.shapes(k)
+        registration = register(
+            (source.vertices, source.faces),
+            (target.vertices, target.faces),
+            height=pairs.height,
+            edge=pairs.edge,
+            iterations=iterations if start is None else max(4, iterations // 3),
+            start=start,
+        )
+        tried[cut.position + k] = registration.residual
+        if registration.reason:
+            reason = reason or registration.reason
+            return None
+        found[k] = registration
+        return registration
+
+    backwards = False
+    at_cut = registered(centre, None, backwards)
+    if at_cut is None:
+        backwards = True
+        at_cut = registered(centre, None, backwards)
+    if at_cut is not None:
+        reason = ""
+        first, last = blend_window(graph, performance, cut, _needed(at_cut, seconds, pairs.height))
+        for side in (range(centre + 1, last + 1), range(centre - 1, first - 1, -1)):
+            start: Registration | None = at_cut
+            for k in side:
+                start = registered(k, start, backwards)
+                if start is None:
+                    break
     report(1.0)
     before = _steps(pairs, {}, cut, first, last)
     if len(found) < FEWEST:
         why = reason or "the two clips share too few frames around the cut"
         return Blend(cut, {}, before, before, tried, f"The cut is left as it is: {why}.")
-    shapes = _in_between(pairs, found, cut)
+    shapes = _in_between(pairs, found, cut, backwards)
     note = f"The blend is shorter than asked: {reason}." if reason else ""
-    return Blend(cut, shapes, before, _steps(pairs, shapes, cut, first, last), tried, note)
+    return Blend(cut, shapes, before, _steps(pairs, shapes, cut, first, last), tried, note, backwards)
+
+
+def _needed(at_cut: Registration, seconds: float, height: float) -> float:
+    """How long the blend takes: as asked, or longer where the body is further away than it can go in that time."""
+    gap = float(np.linalg.norm(at_cut.between(1.0) - at_cut.vertices, axis=1).mean())
+    # The smooth rise of the shares is half as fast again in its middle.
+    return min(max(seconds, 1.5 * gap / (SPEED * height)), LONGER * seconds)
 
 
 def performance_shape(
@@ -229,7 +260,7 @@ def _until_wrap(performance: Performance, cut: Cut) -> int:
     return count - 1
 
 
-def _in_between(pairs: _Pairs, found: dict[int, Registration], cut: Cut) -> dict[int, Shape]:
+def _in_between(pairs: _Pairs, found: dict[int, Registration], cut: Cut, backwards: bool) -> dict[int, Shape]:
     """Shapes with shares rising smoothly over the good frames."""
     order = sorted(found)
     shapes = {}
@@ -237,6 +268,8 @@ def _in_between(pairs: _Pairs, found: dict[int, Registration], cut: Cut) -> dict
         x = (rank + 1) / (len(order) + 1)
         share = x * x * (3 - 2 * x)
         source, target = pairs.shapes(k)
+        if backwards:
+            source, target, share = target, source, 1.0 - share
         vertices = found[k].between(share)
         colours = _mixed(found[k].between(1.0), source, target, share)
         shapes[cut.position + k] = Shape(vertices, source.faces, colours)

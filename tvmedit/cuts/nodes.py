@@ -45,7 +45,7 @@ def spread_nodes(vertices: Array, faces: NDArray[np.int32], spacing: float) -> D
 
     Distances run along edges, never through the air: otherwise a hand beside a hip would follow the hip.
     """
-    offsets, neighbours, lengths = _adjacency(vertices, faces)
+    offsets, neighbours, lengths = adjacency(vertices, faces)
     chosen, bound, distances = _cover(len(vertices), offsets, neighbours, lengths, spacing)
     weights = np.exp(-((distances / spacing) ** 2))
     weights[~np.isfinite(distances)] = 0.0
@@ -71,7 +71,18 @@ def _along(count: int, pairs: Index) -> Index:
     return np.asarray(reverse_cuthill_mckee(table, symmetric_mode=True), np.int64)
 
 
-def _adjacency(vertices: Array, faces: NDArray[np.int32]) -> tuple[Index, Index, Array]:
+def vertex_normals(vertices: Array, faces: NDArray[np.int32]) -> Array:
+    """Unit normals (v, 3), triangles weighted by area; (0, 0, 0) where a vertex has none."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    out = np.zeros_like(vertices)
+    for k in range(3):
+        for axis in range(3):
+            out[:, axis] += np.bincount(faces[:, k], weights=normal[:, axis], minlength=len(vertices))
+    return np.asarray(out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12))
+
+
+def adjacency(vertices: Array, faces: NDArray[np.int32]) -> tuple[Index, Index, Array]:
     """Neighbours of each vertex with edge lengths, as one row-compressed table."""
     from scipy.sparse import coo_matrix
 

@@ -8,11 +8,14 @@ from numpy.typing import NDArray
 
 from tvmedit.cuts.assembly import deform, normal_equations, turn_normals
 from tvmedit.cuts.interpolation import partly
-from tvmedit.cuts.nodes import DeformationGraph, spread_nodes
+from tvmedit.cuts.landmarks import Counterparts, counterparts
+from tvmedit.cuts.nodes import DeformationGraph, spread_nodes, vertex_normals
 from tvmedit.cuts.rotations import rotation_matrices
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int32]
+Pairs = tuple[Array, NDArray[np.int64], Array, Array, Array, Array]
+"""Points, what they follow, gaps to their partners, the partners' normals, trust."""
 SPACING = 0.1015
 """Distance of nodes on a person, metres."""
 PERSON = 1.75
@@ -28,7 +31,13 @@ SURE_EDGES = 1.25
 """A registration by the tight gate is sure if 99 % of the target lies no further from it than so many edge lengths."""
 ASTRAY_EDGES = 5.0
 """One that is not sure is refused if the way back leads 1 % of the body further astray than so many edge lengths."""
+TWISTED_EDGES = 8.0
+"""The same for one that began with the limbs: what moved as far as an arm that is raised turns about itself besides."""
 FEWEST_BACK = 14
+GUIDED = (10.0, 10.0, 6.0, 3.0, 2.0, 1.0, 0.5, 0.5)
+"""Stiffness of the steps towards known places, before closest points are looked for."""
+PULL, PULLED = 0.3, 0.7
+"""How much they weigh beside closest points at first, and the share of the steps after which they count no longer."""
 REFUSED_EDGES = 2.0
 """A registration is refused if 1 % of the target lies further from it than so many mean edge lengths."""
 VOLUMES = (0.93, 1.05)
@@ -84,17 +93,6 @@ def _lowest(vertices: Array) -> float:
     return float(np.partition(vertices[:, 2], count - 1)[:count].mean())
 
 
-def vertex_normals(vertices: Array, faces: Faces) -> Array:
-    """Unit normals (v, 3), triangles weighted by area; (0, 0, 0) where a vertex has none."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    out = np.zeros_like(vertices)
-    for k in range(3):
-        for axis in range(3):
-            out[:, axis] += np.bincount(faces[:, k], weights=normal[:, axis], minlength=len(vertices))
-    return np.asarray(out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12))
-
-
 def mesh_volume(vertices: Array, faces: Faces) -> float:
     """Volume enclosed, for closed meshes with outward normals."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
@@ -136,6 +134,9 @@ def register(
     found = _judged(_fitted(source, target, metre, iterations, start, TIGHT), target, edge)
     if not found.reason and found.residual <= SURE_EDGES * edge:
         return found
+    by_limbs = _found_by_limbs(source, target, metre, iterations, edge)
+    if by_limbs is not None:
+        return by_limbs
     # Limbs far on their way: a wider gate catches them, but now and then the wrong one. Then the way back differs.
     wide = found
     if found.reason:
@@ -149,6 +150,29 @@ def register(
     return wide
 
 
+def _found_by_limbs(
+    source: tuple[Array, Faces], target: tuple[Array, Faces], metre: float, iterations: int, edge: float
+) -> Registration | None:
+    """Registration that begins where the limbs are by their distances along the surface, if it leads there and back."""
+    there = counterparts(source, target)
+    if there is None:
+        return None
+    found = _judged(_fitted(source, target, metre, iterations, None, TIGHT, there), target, edge)
+    if found.reason:
+        return None
+    back = counterparts(target, source)
+    if back is None:
+        return None
+    returned = _judged(_fitted(target, source, metre, iterations, None, TIGHT, back), source, edge)
+    if returned.reason:
+        # The way back may be barred: a hand that lies on a hip is one with it. Then the limbs themselves must say.
+        vertices, places = there
+        apart = float(np.quantile(np.linalg.norm(found.between(1.0)[vertices] - places, axis=1), 0.95))
+    else:
+        apart = _astray(found, returned)
+    return found if apart <= TWISTED_EDGES * edge else None
+
+
 def _fitted(
     source: tuple[Array, Faces],
     target: tuple[Array, Faces],
@@ -156,13 +180,20 @@ def _fitted(
     iterations: int,
     start: Registration | None,
     gates: tuple[float, float],
+    known: Counterparts | None = None,
 ) -> Registration:
     vertices, faces = source
     graph = spread_nodes(vertices, faces, SPACING * metre)
     rotations, moves = _first_guess(graph, start)
     fit = _Fit(vertices, vertex_normals(vertices, faces), target[0], vertex_normals(*target), graph, metre)
-    for stiffness, gate in _schedule(iterations, gates, warm=start is not None):
-        rotations, moves = fit.step(rotations, moves, stiffness, gate * metre)
+    if known is not None:
+        for stiffness in GUIDED:
+            rotations, moves = fit.towards(rotations, moves, known, stiffness)
+    for number, (stiffness, gate) in enumerate(
+        _schedule(iterations, gates, warm=start is not None or known is not None)
+    ):
+        pull = PULL * max(0.0, 1.0 - number / (PULLED * iterations)) if known is not None else 0.0
+        rotations, moves = fit.step(rotations, moves, stiffness, gate * metre, known if pull > 0.0 else None, pull)
     return Registration(vertices, faces, graph, rotations, moves)
 
 
@@ -217,7 +248,7 @@ class _Fit:
     ) -> None:
         from scipy.spatial import cKDTree
 
-        self.graph, self.metre = graph, metre
+        self.graph, self.metre, self.vertices = graph, metre, vertices
         pick = _even(len(vertices))
         self.points, self.normals = vertices[pick], normals[pick]
         self.bound, self.weights = graph.bound[pick], graph.weights[pick]
@@ -226,9 +257,16 @@ class _Fit:
         self.target, self.target_normals = target, target_normals
         self.tree = cKDTree(target)
 
-    def step(self, rotations: Array, moves: Array, stiffness: float, gate: float) -> tuple[Array, Array]:
-        """Take one Gauss-Newton step."""
-        from scipy.linalg import solveh_banded
+    def step(
+        self,
+        rotations: Array,
+        moves: Array,
+        stiffness: float,
+        gate: float,
+        known: Counterparts | None = None,
+        pull: float = 0.0,
+    ) -> tuple[Array, Array]:
+        """Take one Gauss-Newton step by closest points, and towards known places with a share of a pair's weight."""
         from scipy.spatial import cKDTree
 
         graph = self.graph
@@ -238,21 +276,34 @@ class _Fit:
         there = _trust(np.asarray(far), facing, self.target_normals[partner], gate)
         far, mine = cKDTree(now).query(self.goals)
         back = _trust(np.asarray(far), facing[mine], self.goal_normals, gate)
+        pairs = [
+            (self.points, self.bound, self.weights, now - self.target[partner], self.target_normals[partner], there),
+            (self.points[mine], self.bound[mine], self.weights[mine], now[mine] - self.goals, self.goal_normals, back),
+        ]
+        if known is not None:
+            pairs.append(self._pulled(rotations, moves, known, pull))
+        return self._solved(rotations, moves, pairs, stiffness)
+
+    def towards(self, rotations: Array, moves: Array, known: Counterparts, stiffness: float) -> tuple[Array, Array]:
+        """Take one Gauss-Newton step towards known places alone."""
+        return self._solved(rotations, moves, [self._pulled(rotations, moves, known, 1.0)], stiffness)
+
+    def _pulled(self, rotations: Array, moves: Array, known: Counterparts, pull: float) -> Pairs:
+        vertices, places = known
+        points, bound, weights = self.vertices[vertices], self.graph.bound[vertices], self.graph.weights[vertices]
+        now = deform(points, self.graph.places, bound, weights, rotations, moves)
+        # Without a normal only the share of the whole gap is left of a pair's weight.
+        return points, bound, weights, now - places, np.zeros_like(points), np.full(len(points), pull / POINT_SHARE)
+
+    def _solved(self, rotations: Array, moves: Array, pairs: list[Pairs], stiffness: float) -> tuple[Array, Array]:
+        from scipy.linalg import solveh_banded
+
+        graph = self.graph
+        points, bound, weights, gaps, normals, trust = (np.concatenate(column) for column in zip(*pairs, strict=True))
         matrix, right = normal_equations(
-            np.concatenate([self.points, self.points[mine]]),
-            np.concatenate([self.bound, self.bound[mine]]),
-            np.concatenate([self.weights, self.weights[mine]]),
-            np.concatenate([now - self.target[partner], now[mine] - self.goals]),
-            np.concatenate([self.target_normals[partner], self.goal_normals]),
-            np.concatenate([there, back]),
-            graph.places,
-            rotations,
-            moves,
-            graph.edges,
-            stiffness,
-            POINT_SHARE,
-            graph.bandwidth,
-        )
+            points, bound, weights, gaps, normals, trust, graph.places, rotations, moves, graph.edges,
+            stiffness, POINT_SHARE, graph.bandwidth,
+        )  # fmt: skip
         size = len(right)
         # A node far from all pairs keeps its motion; the term is far below any pair's.
         matrix[0] += np.tile([1e-4 * self.metre**2] * 3 + [1e-2] * 3, size // 6)

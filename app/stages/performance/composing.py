@@ -56,7 +56,7 @@ def blended(document: Document) -> Stage:
     wanted = choice.blend and choice.align
     inputs = (order, sources, counts, wanted, choice.blend_seconds, choice.hard_cuts)
     stages = (graph(document), assembled(document), *itertools.chain.from_iterable(needs))
-    return Stage("blends", "Blending the cuts", _blended, inputs, stages, version=2, weight=10.0)
+    return Stage("blends", "Blending the cuts", _blended, inputs, stages, version=3, weight=10.0)
 
 
 def node_of(graph: Any, order: Sequence[str], motion: Motion) -> int:
@@ -110,7 +110,7 @@ def _assembled(context: Context, inputs: tuple[Any, ...], made: Any, found: list
 
 
 def _blended(context: Context, inputs: tuple[Any, ...], made: Any, placed: Assembled, *results: Any) -> Blended:
-    from tvmedit.cuts.blending import blend_window
+    from tvmedit.cuts.blending import LONGER, blend_window
 
     order, sources, counts, wanted, seconds, hard_cuts = inputs
     performance = placed.performance
@@ -122,7 +122,8 @@ def _blended(context: Context, inputs: tuple[Any, ...], made: Any, placed: Assem
     for number, cut in enumerate(cuts):
         context.progress(number / len(cuts))
         sequences = (made.nodes[cut.source].sequence, made.nodes[cut.target].sequence)
-        window = blend_window(made, performance, cut, seconds)
+        # Which of the two is blended over is found out on the way; a neighbouring cut may bound either.
+        window = tuple(blend_window(made, performance, cut, share * seconds) for share in (1.0, LONGER))
         move = _relative(performance, cut.position)
         key = ("blend", repr(sources), sequences, cut.leave, cut.enter, window, tuple(move.round(12)))
         kept = context.media.memory.get(key)

@@ -1,0 +1,76 @@
+"""Limbs found again in another pose, told apart by distances along the surface."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+import tvmedit
+from resources.performer import body_capsules, body_joints, body_mesh, motion_pose
+from tvmedit.cuts.landmarks import counterparts, limb_ends
+from tvmedit.cuts.registration import REFUSED_EDGES
+
+Mesh = tuple[np.ndarray, np.ndarray]
+UP, SPREAD, EDGE = ("wave both", 0.3), ("twist", 0.25), 0.024
+
+
+def body(name: str, phase: float, seed: int) -> tuple[Mesh, np.ndarray]:
+    """Mesh of a performer's pose, and its joints."""
+    joints = body_joints(motion_pose(name, phase))
+    vertices, faces, _ = body_mesh(body_capsules(joints), offset=np.random.default_rng(seed).random(3))
+    return (vertices, faces), joints
+
+
+def carried(places: np.ndarray, moved: np.ndarray, joints: np.ndarray) -> np.ndarray:
+    """Joints moved along with the dozen places nearest to each."""
+    near = cKDTree(places).query(joints, k=12)[1]
+    return joints + (moved - places)[near].mean(axis=1)
+
+
+def test_hands_feet_and_head_are_the_ends_of_a_body() -> None:
+    """Five ends, each at the joint furthest out."""
+    mesh, joints = body(*SPREAD, 1)
+    ends = limb_ends(*mesh)
+    assert ends is not None
+    nearest = cKDTree(joints).query(mesh[0][ends.vertices])[1]
+    assert set(nearest.tolist()) == {2, 5, 9, 12, 16}
+
+
+def test_places_are_found_however_far_a_limb_moved() -> None:
+    """Joints carried by the counterparts come within 6 cm on average of where they are, moved by up to a metre."""
+    (source, before), (target, after) = body(*UP, 2), body(*SPREAD, 3)
+    found = counterparts(source, target)
+    assert found is not None
+    vertices, places = found
+    assert np.linalg.norm(before - after, axis=1).max() > 0.6
+    moved = carried(source[0][vertices], places, before)
+    assert np.linalg.norm(moved - after, axis=1).mean() < 0.06
+
+
+def test_one_mesh_that_moves_needs_no_search() -> None:
+    """The same faces: every vertex is its own counterpart."""
+    source, _ = body(*UP, 2)
+    moved = source[0] @ np.diag([1.0, 0.5, 2.0])
+    found = counterparts(source, (moved, source[1]))
+    assert found is not None
+    assert np.array_equal(found[1], moved[found[0]])
+
+
+def test_a_body_in_pieces_has_no_ends() -> None:
+    """Its halves do not hang together."""
+    mesh, _ = body(*SPREAD, 1)
+    low = mesh[0][:, 2].mean()
+    halved = mesh[1][(mesh[0][mesh[1], 2] < low).all(axis=1) | (mesh[0][mesh[1], 2] > low).all(axis=1)]
+    assert limb_ends(mesh[0], halved) is None
+
+
+@pytest.mark.slow
+def test_arms_far_from_their_goal_are_registered() -> None:
+    """Closest points lose raised arms that come down; with the limbs known they arrive, and half-way is whole."""
+    (source, before), (target, after) = body(*UP, 2), body(*SPREAD, 3)
+    found = tvmedit.register(source, target, height=1.75, edge=EDGE, iterations=14)
+    assert found.reason == ""
+    assert found.residual < REFUSED_EDGES * EDGE
+    moved = carried(source[0], found.between(1.0), before)
+    assert np.linalg.norm(moved - after, axis=1).max() < 0.15
