@@ -16,6 +16,7 @@ from app.formats.tvm import open_mesh_frames
 from app.model.character import Character
 from app.model.document import Document
 from app.model.edits import Edit, characters, scene, sequences
+from app.model.performance import CapturedSequence
 from app.model.values import Clip, MediaRef
 from app.stages.foreign import is_project, open_motion
 from app.storage.folder import ProjectFolder, fingerprint
@@ -85,7 +86,7 @@ def relink(session: Session, lost: LostMedium, path: Path) -> None:
         edit = characters.relink_character(document, lost.id, session.folder.link(path))
     elif lost.kind == "sequence":
         if not is_project(path):
-            _check_sequence(document.sequence(lost.id).source_count, path)
+            _check_sequence(document.sequence(lost.id), path)
         edit = sequences.relink_sequence(document, lost.id, find_again(session, lost.id, path))
     else:
         found = scene.set_camera(document, "file", file=session.folder.link(path))
@@ -155,10 +156,11 @@ def _check_mesh(character: Character, path: Path) -> None:
         )
 
 
-def _check_sequence(count: int, path: Path) -> None:
-    with open_mesh_frames(path) as frames:
+def _check_sequence(sequence: CapturedSequence, path: Path) -> None:
+    with open_mesh_frames(path, animation=sequence.animation) as frames:
         has = len(frames)
-    if has != count:
+    if has != sequence.source_count:
         raise InputError(
-            f"{path.name} is another sequence: it has {has} frames, not {count}; choose the one used then."
+            f"{path.name} is another sequence: it has {has} frames, not {sequence.source_count}; choose the one used "
+            "then."
         )

@@ -64,6 +64,7 @@ class FoundSequence:
     unit: float
     guessed: tuple[Fact, ...]
     notes: str
+    animation: str | None = None
 
 
 def read_sequence(
@@ -76,17 +77,19 @@ def read_sequence(
     unit: float | None = None,
     copy: bool = False,
     character: str | None = None,
+    animation: str | None = None,
     progress: Progress | None = None,
 ) -> FoundSequence:
     """Look what a sequence of meshes is and bring it in, without changing the document: safe in any thread.
 
-    Of another project it is the finished motion of a ``character``, which is linked and never solved here.
+    Of another project it is the finished motion of a ``character``, which is linked and never solved here; of a file
+    with several animations the one named, or numbered from 1.
 
     Raises ``InputError`` when it cannot be read.
     """
     report = progress or silent
     report(0.0)
-    with _opened(session, path, character) as frames:
+    with _opened(session, path, character, animation) as frames:
         report(0.2)
         guess = guess_facts(frames, fps=fps, up=up, unit=unit)
         count = len(frames)
@@ -97,8 +100,9 @@ def read_sequence(
         media, own = _linked(path, frames), frames.character
     else:
         media, own = session.bring_in(path, copy=copy), path.name if path.is_dir() else path.stem
+        own = own if animation is None else f"{own} {animation}"
     chosen = name or own
-    return FoundSequence(chosen, media, count, guess.fps, guess.up, guess.unit, guess.guessed, guess.why)
+    return FoundSequence(chosen, media, count, guess.fps, guess.up, guess.unit, guess.guessed, guess.why, animation)
 
 
 def read_sequences(session: Session, path: Path, *, progress: Progress | None = None) -> tuple[FoundSequence, ...]:
@@ -115,9 +119,11 @@ def characters_of(path: Path) -> tuple[str, ...]:
     return tuple(each.character.id for each in finished(path)) if is_project(path) else ()
 
 
-def _opened(session: Session, path: Path, character: str | None) -> MeshFrames:
+def _opened(session: Session, path: Path, character: str | None, animation: str | None) -> MeshFrames:
     if not is_project(path):
-        return open_mesh_frames(path)
+        return open_mesh_frames(path, animation=animation)
+    if animation is not None:
+        raise InputError(f"{path.name} is a project, whose motions go by their characters: name no animation.")
     if path.resolve() == session.folder.path.resolve():
         raise InputError(f"{path.name} is this project itself: add the motion of its character instead.")
     if character is None:
@@ -164,6 +170,7 @@ def take_sequence(session: Session, found: FoundSequence) -> tuple[str, str]:
         up=found.up,
         unit=found.unit,
         guessed=found.guessed,
+        animation=found.animation,
     )
     return session.apply(edit).sequences[-1].id, f"{found.notes} {converted}".strip()
 
@@ -178,6 +185,7 @@ def add_sequence(
     unit: float | None = None,
     copy: bool = False,
     character: str | None = None,
+    animation: str | None = None,
 ) -> tuple[str, str]:
     """Add a sequence of meshes; gives its id, and a sentence on what was guessed or converted (empty if nothing).
 
@@ -185,7 +193,8 @@ def add_sequence(
 
     Raises ``InputError`` when it cannot be read.
     """
-    found = read_sequence(session, path, name=name, fps=fps, up=up, unit=unit, copy=copy, character=character)
+    facts: dict[str, Any] = {"fps": fps, "up": up, "unit": unit, "character": character, "animation": animation}
+    found = read_sequence(session, path, name=name, copy=copy, **facts)
     return take_sequence(session, found)
 
 
@@ -198,7 +207,7 @@ def find_again(session: Session, sequence_id: str, path: Path, *, progress: Prog
     (progress or silent)(0.0)
     if is_project(path) and sequence.media is not None:
         return _motion_again(sequence, sequence.media.fingerprint, path)
-    with open_mesh_frames(path) as frames:
+    with open_mesh_frames(path, animation=sequence.animation) as frames:
         if len(frames) != sequence.source_count:
             raise InputError(
                 f"{path.name} has {len(frames)} frames, but {sequence.name} was made of {sequence.source_count}: "

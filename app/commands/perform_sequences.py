@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,9 @@ SEQUENCE = click.option("--sequence", "name", help="Which sequence, where there 
 @PROJECT
 @click.argument("files", nargs=-1, type=PATH)
 @click.option("--character", "characters", multiple=True, help="Add this character's motion (of a project in FILES).")
+@click.option(
+    "--animation", "animations", multiple=True, help="Add this animation of a GLB with several: name or number."
+)
 @click.option("--name", help="Name of the sequence; by default that of the file.")
 @click.option("--fps", type=float, help="Frame rate of the files.")
 @click.option("--up", type=click.Choice(["y", "z"]), help="Up axis of the files.")
@@ -33,7 +37,14 @@ SEQUENCE = click.option("--sequence", "name", help="Which sequence, where there 
 @click.option("--level", is_flag=True, help="Take out what the performer climbs.")
 @click.option("--copy", is_flag=True, help="Copy the files into the project instead of linking them.")
 @click.pass_obj
-def add(console: Console, project: Path, files: tuple[Path, ...], characters: tuple[str, ...], **said: Any) -> None:
+def add(
+    console: Console,
+    project: Path,
+    files: tuple[Path, ...],
+    characters: tuple[str, ...],
+    animations: tuple[str, ...],
+    **said: Any,
+) -> None:
     """Add sequences to a project: folders of PLY, OBJ, OFF or GLB, npz, animated GLB, finished motions of projects.
 
     Makes the project if need be.
@@ -41,12 +52,15 @@ def add(console: Console, project: Path, files: tuple[Path, ...], characters: tu
     if not files and not characters:
         raise InputError("There is nothing to add: name folders or files, or a character.")
     wanted, characters = _wanted(files, characters)
-    if said["name"] and len(wanted) + len(characters) > 1:
+    chosen_animations = animations or (None,)
+    if animations and len(files) != 1:
+        raise InputError("It is not clear which file has the animation: name one file beside it.")
+    if said["name"] and len(wanted) * len(chosen_animations) + len(characters) > 1:
         raise InputError("One name cannot serve several sequences: add them one by one.")
     with closing(_open_or_new(project)) as session:
         added = []
-        for file, whose in wanted:
-            facts = {key: said[key] for key in ("fps", "up", "unit")} | {"character": whose}
+        for (file, whose), animation in itertools.product(wanted, chosen_animations):
+            facts = {key: said[key] for key in ("fps", "up", "unit")} | {"character": whose, "animation": animation}
             made, note = performing.add_sequence(session, file, name=said["name"], copy=said["copy"], **facts)
             added.append((made, note))
         for character in characters:

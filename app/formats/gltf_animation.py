@@ -20,6 +20,8 @@ SLOWEST, FASTEST = 10, 240
 """Frames a second between which even keys are taken to be the frames themselves."""
 SAME_TIME = 1e-4
 """Seconds; key times closer than this are one, being single precision."""
+MOST_NAMED = 12
+"""Animations that a message lists."""
 LONGEST = 100_000
 """Frames; a longer animation is a mistake in its times."""
 
@@ -108,6 +110,54 @@ def read_animation(gltf: Gltf) -> Animation | None:
         if channels:
             return _timed(gltf, str(entry.get("name") or f"animation {number + 1}"), channels)
     return None
+
+
+def keep_animation(gltf: Gltf, wanted: str | None) -> str:
+    """Leave one of a file's animations, the first if none is wanted; gives a sentence where others were there.
+
+    Parameters
+    ----------
+    wanted : its name, or its number from 1.
+
+    Raises
+    ------
+    InputError
+        There is none, or there are several, of that name.
+    """
+    entries = gltf.tree.get("animations")
+    if not isinstance(entries, list) or not entries or not all(isinstance(entry, dict) for entry in entries):
+        if wanted is None:
+            return ""
+        raise InputError(f"The file {gltf.name} has no animation to choose: add it without naming one.")
+    names = [str(entry.get("name") or f"animation {number}") for number, entry in enumerate(entries, start=1)]
+    listed = ", ".join(names[:MOST_NAMED]) + (", ..." if len(names) > MOST_NAMED else "")
+    # Those that move nothing here (lights, cameras' lenses) are not played unless asked for.
+    chosen = [k for k, entry in enumerate(entries) if _moves_something(entry)][:1] or [0]
+    if wanted is not None:
+        chosen = [k for k, name in enumerate(names) if name == wanted]
+        chosen = chosen or [k for k, name in enumerate(names) if name.lower() == wanted.lower()]
+        if not chosen and wanted.isdecimal() and 1 <= int(wanted) <= len(names):
+            chosen = [int(wanted) - 1]
+        if not chosen:
+            raise InputError(f"The file {gltf.name} has no animation {wanted}: it has {listed}.")
+        if len(chosen) > 1:
+            numbers = " and ".join(str(k + 1) for k in chosen)
+            raise InputError(
+                f"The file {gltf.name} has {len(chosen)} animations called {wanted}: name one by its number, {numbers}."
+            )
+    gltf.tree["animations"] = [entries[chosen[0]]]
+    if wanted is not None or len(names) == 1:
+        return ""
+    taken = names[chosen[0]]
+    return f"{gltf.name} has {len(names)} animations ({listed}): {taken} is taken; name another one when adding it."
+
+
+def _moves_something(entry: dict[str, Any]) -> bool:
+    try:
+        targets = [channel["target"] for channel in entry["channels"]]
+        return any(target.get("node") is not None and target["path"] in (*WIDTHS, "weights") for target in targets)
+    except (KeyError, TypeError, AttributeError):
+        return True
 
 
 def _channels(gltf: Gltf, entry: dict[str, Any]) -> list[Channel]:

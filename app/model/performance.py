@@ -53,6 +53,7 @@ class CapturedSequence:
     guessed : which of fps, up and unit the program guessed and the user has not said.
     front : where the performer faces in frame 0, degrees from +x towards +y; None finds it.
     level : take out what the performer climbs, so that a walk up some stairs joins one on level ground.
+    animation : which one of a file that holds several; None is the only one, or the first.
     representatives : frames whose texton stands for its cluster; the others are chosen by eq. 9.
     """
 
@@ -72,6 +73,7 @@ class CapturedSequence:
     structure: StructureChoice = attrs.field(factory=StructureChoice)
     representatives: tuple[int, ...] = ()
     visible: bool = True
+    animation: str | None = None
     unknown: Unknown = attrs.field(factory=FrozenMap, repr=False)
 
     def source_frame(self, frame: int) -> int:

@@ -62,19 +62,20 @@ class Media:
                 mesh = self._meshes[media.fingerprint] = read_mesh(self.locate(media))
             return mesh
 
-    def mesh_frames(self, media: MediaRef) -> MeshFrames:
-        """Give the frames of a captured sequence."""
+    def mesh_frames(self, media: MediaRef, animation: str | None = None) -> MeshFrames:
+        """Give the frames of a captured sequence; of a file with several animations, those of the one named."""
         with self._lock:
-            frames = self._sequences.get(media.fingerprint)
+            key = media.fingerprint if animation is None else f"{media.fingerprint} {animation}"
+            frames = self._sequences.get(key)
             if frames is None:
-                frames = self._sequences[media.fingerprint] = self._open_sequence(media)
+                frames = self._sequences[key] = self._open_sequence(media, animation)
             return frames
 
-    def _open_sequence(self, media: MediaRef) -> MeshFrames:
+    def _open_sequence(self, media: MediaRef, animation: str | None) -> MeshFrames:
         from app.stages.foreign import is_project, open_motion
 
         path = self.locate(media)
-        return open_motion(path, media.fingerprint) if is_project(path) else open_mesh_frames(path)
+        return open_motion(path, media.fingerprint) if is_project(path) else open_mesh_frames(path, animation=animation)
 
     def flow_room(self, clip: Clip) -> Any:
         """Give the flow field of this clip that a cancelled computation left, or an empty one."""

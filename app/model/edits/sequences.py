@@ -26,6 +26,7 @@ def add_sequence(
     up: SequenceUp = "z",
     unit: float = 1.0,
     guessed: tuple[Fact, ...] = (),
+    animation: str | None = None,
 ) -> Edit:
     """Add a sequence of files, or the motion of a character of this project."""
     if (media is None) == (character is None):
@@ -47,6 +48,7 @@ def add_sequence(
         up=_axis(up),
         unit=_positive(unit, "unit"),
         guessed=tuple(fact for fact in ("fps", "up", "unit") if fact in guessed),
+        animation=animation,
     )
     grown = attrs.evolve(document, sequences=(*document.sequences, made), next_id=number + 1)
     return Edit(grown, f"Add {made.name}")

@@ -37,6 +37,7 @@ class FootageSource:
     up: str
     unit: float
     level: bool
+    animation: str | None = None
 
     def source_frame(self, frame: int) -> int:
         """Give the file shown at a frame."""
@@ -56,6 +57,7 @@ def source_of(document: Document, sequence: CapturedSequence) -> FootageSource:
         sequence.up,
         sequence.unit,
         sequence.level,
+        sequence.animation,
     )
 
 
@@ -135,7 +137,7 @@ def open_footage(media: Media, source: FootageSource, results: tuple[Any, ...]) 
             )
         assert source.mesh is not None
         return Footage(source, None, (aligned, animated, media.mesh(source.mesh).colors))
-    frames = media.mesh_frames(source.media)
+    frames = media.mesh_frames(source.media, source.animation)
     if len(frames) != source.source_count:
         raise InputError(
             f"{frames.name} is another sequence now: it has {len(frames)} frames, the project was made with "

@@ -208,7 +208,7 @@ def test_what_a_file_leaves_open_is_said(tmp_path: Path) -> None:
         assert len(frames) == 11  # a third of a second
         guess = guess_facts(frames)
     assert guess.guessed == ()
-    assert "2 animations: wave is taken" in guess.why
+    assert "2 animations (wave, run): wave is taken" in guess.why
     assert "no even rate" in guess.why
 
 
@@ -356,3 +356,26 @@ def _refused(path: Path) -> bool:
     except InputError:
         return True
     return False
+
+
+def test_one_of_several_animations_is_chosen_by_name_or_number(tmp_path: Path) -> None:
+    """Without a choice the first is taken and the others are named; what is not there, or twice there, is said."""
+    arm = Arm()
+
+    def thrice(tree: dict[str, Any]) -> None:
+        wave = tree["animations"][0]
+        # The second moves the first joint alone.
+        only = {**wave, "name": "Bend", "channels": wave["channels"][:1]}
+        tree["animations"] += [only, {**only, "name": "Bend"}]
+
+    path = arm.write(tmp_path / "arm.glb", thrice)
+    first, second = open_mesh_frames(path), open_mesh_frames(path, animation="2")
+    assert "3 animations (wave, Bend, Bend): wave is taken" in first.remark
+    assert second.remark == ""
+    assert open_mesh_frames(path, animation="Wave").remark == ""
+    assert np.abs(first[4].vertices - second[4].vertices).max() > 0.05
+    for wanted, sentence in (("Run", "no animation Run: it has wave"), ("Bend", "by its number, 2 and 3")):
+        with pytest.raises(InputError, match=sentence):
+            open_mesh_frames(path, animation=wanted)
+    with pytest.raises(InputError, match="only an animated GLB"):
+        open_mesh_frames(tmp_path, animation="wave")
