@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Literal
@@ -11,13 +12,15 @@ import numpy as np
 from app.actions.performing_frames import PerformanceFrames, performance_frames
 from app.actions.session import Session
 from app.formats import write_sequence
-from app.formats.tvm import write_mesh_frames
+from app.formats.tvm import FrameMesh, Texture, write_mesh_frames
+from app.formats.tvm.glb_dress import same_texture, write_dressed_animation
 from app.formats.tvm.painting import painted
+from app.formats.usd import USD_SUFFIXES
 from imitation.errors import InputError
 from imitation.progress import Progress, part, silent
 
-PerformanceForm = Literal["ply", "obj", "off", "glb", "npz", "animation"]
-FORMS: tuple[PerformanceForm, ...] = ("ply", "obj", "off", "glb", "npz", "animation")
+PerformanceForm = Literal["ply", "obj", "off", "glb", "npz", "animation", "usd"]
+FORMS: tuple[PerformanceForm, ...] = ("ply", "obj", "off", "glb", "npz", "animation", "usd")
 
 
 def export_performance(
@@ -32,8 +35,8 @@ def export_performance(
 
     Parameters
     ----------
-    form : "ply", "obj", "off", "glb": a folder of meshes; "npz": one file; "animation": one animated GLB, where all
-        frames have the same faces. Taken from the suffix where it is not given: .npz, .glb; else PLY.
+    form : "ply", "obj", "off", "glb": a folder of meshes; "npz", "usd": one file; "animation": one animated GLB, where
+        all frames have the same faces. Taken from the suffix where it is not given (.npz, .usd, .glb); else PLY.
     blended : with in-betweens at the cuts.
 
     Raises ``InputError`` when it has not been composed, or cannot be written so.
@@ -46,7 +49,7 @@ def export_performance(
         return chosen, _write_animation(target, frames, name, report)
     textured = blends = 0
 
-    def counted() -> object:
+    def counted() -> Iterator[FrameMesh]:
         nonlocal textured, blends
         for position, mesh in enumerate(frames):
             textured += mesh.texture is not None
@@ -55,7 +58,7 @@ def export_performance(
 
     write_mesh_frames(
         target,
-        counted(),  # type: ignore[arg-type]
+        counted(),
         form=chosen,
         fps=Fraction(frames.fps).limit_denominator(100_000),
         count=len(frames),
@@ -76,8 +79,12 @@ def _form(target: Path) -> PerformanceForm:
         return "npz"
     if suffix in (".glb", ".gltf"):
         return "animation"
+    if suffix in USD_SUFFIXES:
+        return "usd"
     if suffix:
-        raise InputError(f"{target.name} names no known form: end it in .glb or .npz, or give a folder and --format.")
+        raise InputError(
+            f"{target.name} names no known form: end it in .glb, .usd or .npz, or give a folder and --format."
+        )
     return "ply"
 
 
@@ -88,15 +95,23 @@ def _write_animation(target: Path, frames: PerformanceFrames, name: str, report:
             "The frames have faces of their own, which one animated GLB cannot hold: write a folder (--format glb) or "
             "an .npz."
         )
-    textured = frames[0].texture is not None
-    first = painted(frames[0])
-    vertices = np.empty((len(frames), *first.vertices.shape), np.float32)
+    vertices = np.empty((len(frames), *frames[0].vertices.shape), np.float32)
+    worn: list[Texture | None] = []
     for position in range(len(frames)):
-        vertices[position] = frames[position].vertices
+        mesh = frames[position]
+        vertices[position] = mesh.vertices
+        # In-betweens have the faces of all others here, so their pictures lie on them too.
+        if not frames.blended(position) and all(mesh.texture is not each for each in worn):
+            worn.append(mesh.texture)
         report(0.5 * (position + 1) / len(frames))
     rate = Fraction(frames.fps).limit_denominator(100_000)
-    colours = first.colours
-    write_sequence(
-        target, vertices, first.faces, rate, form="glb", colors=colours, name=name, progress=part(report, 0.5, 1.0)
-    )
-    return "One animated GLB holds no pictures here: it has their colours at the vertices." if textured else ""
+    rest = part(report, 0.5, 1.0)
+    first, texture = frames[0], worn[0]
+    if texture is not None and all(same_texture(texture, other) for other in worn[1:]):
+        write_dressed_animation(target, vertices, first.faces, rate, texture, first.colours, name=name, progress=rest)
+        return ""
+    colours = painted(first).colours
+    write_sequence(target, vertices, first.faces, rate, form="glb", colors=colours, name=name, progress=rest)
+    if not any(each is not None for each in worn):
+        return ""
+    return "One animated GLB holds no pictures that change: it has the first frame's colours at its vertices."

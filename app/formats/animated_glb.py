@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,6 +18,7 @@ from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
 Interpolation = Literal["linear", "step"]
+Dress = Callable[[GltfWriter], None]
 
 
 def write_animated_glb(
@@ -27,6 +29,7 @@ def write_animated_glb(
     interpolation: Interpolation = "linear",
     quantize: bool = False,
     normals: bool = True,
+    dress: Dress | None = None,
 ) -> None:
     """Write a sequence as one GLB (Z up here, Y up in the file).
 
@@ -39,6 +42,7 @@ def write_animated_glb(
     quantize : displacements as 16-bit integers and normals as bytes (KHR_mesh_quantization): half the size,
         positions within 1/32767 of the largest displacement.
     normals : also write normals that move with the shape; without, viewers make flat or still ones.
+    dress : puts pictures on the finished scene.
     """
     report = progress or silent
     writer = GltfWriter()
@@ -69,6 +73,8 @@ def write_animated_glb(
     if quantize and targets:
         writer.tree["nodes"][0]["scale"] = [scale] * 3
         writer.tree["extensionsUsed"] = writer.tree["extensionsRequired"] = ["KHR_mesh_quantization"]
+    if dress is not None:
+        dress(writer)
     writer.tree["asset"]["extras"] = {"fps": str(sequence.fps), "frames": count}
     writer.write(path)
     report(1.0)

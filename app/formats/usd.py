@@ -20,7 +20,7 @@ USD_SUFFIXES = (".usd", ".usda", ".usdc")
 
 def write_usd(path: Path, sequence: MeshSequence, progress: Progress | None = None) -> None:
     """Write a sequence as a USD stage: Z up, metres, one time code a frame from 0, fps time codes a second."""
-    pxr = _pxr()
+    pxr = usd_library()
     report = progress or silent
     stage = pxr.Usd.Stage.CreateInMemory(path.name)
     pxr.UsdGeom.SetStageUpAxis(stage, pxr.UsdGeom.Tokens.z)
@@ -57,7 +57,7 @@ def write_usd(path: Path, sequence: MeshSequence, progress: Progress | None = No
 
 def read_usd(path: Path) -> MeshSequence:
     """Read the first mesh of a stage at each of its time samples, turned to Z up where the stage is Y up."""
-    pxr = _pxr()
+    pxr = usd_library()
     try:
         stage = pxr.Usd.Stage.Open(str(path))
     except pxr.Tf.ErrorException as error:
@@ -92,7 +92,8 @@ def read_usd(path: Path) -> MeshSequence:
     return mesh_sequence(vertices, to_int32(corners.reshape(-1, 3), path.name), fps, colors, prims[0].GetName())
 
 
-def _pxr() -> Any:
+def usd_library() -> Any:
+    """Give the parts of usd-core that are used; it is an optional extra."""
     try:
         from pxr import Tf, Usd, UsdGeom, Vt
     except ImportError as error:

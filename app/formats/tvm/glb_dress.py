@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import re
 import urllib.parse
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +13,17 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from app.formats.animated_glb import write_animated_glb
+from app.formats.atomic import replacing
 from app.formats.glb import base_primitive, glb_mesh, scene, surfaces
 from app.formats.gltf import Gltf, GltfWriter, read_gltf
 from app.formats.images import read_bytes
 from app.formats.meshfile import MeshFile, check_mesh
-from app.formats.sequence import vertex_normals
+from app.formats.sequence import mesh_sequence, vertex_normals
 from app.formats.tvm.frames import FrameMesh, Texture
 from app.formats.tvm.pictures import PictureRoom, picture_suffix
 from imitation.errors import InputError
+from imitation.progress import Progress
 
 Array = NDArray[np.float64]
 
@@ -121,16 +125,60 @@ def _sewn(mesh: MeshFile) -> FrameMesh:
 
 def write_dressed_glb(file: Path, mesh: FrameMesh, texture: Texture) -> None:
     """Write a mesh with its pictures inside, PNG and JPEG byte for byte, others as PNG."""
-    pairs = np.stack([mesh.faces.reshape(-1), texture.corners.reshape(-1)], axis=1)
+    apart, faces, places = _cut_at_seams(mesh.faces, texture)
+    normals = vertex_normals(mesh.vertices, mesh.faces)[apart]
+    colours = None if mesh.colours is None else mesh.colours[apart]
+    writer = GltfWriter()
+    scene(writer, {"primitives": [base_primitive(writer, mesh.vertices[apart], faces, colours, normals)]}, file.stem)
+    _wear(writer, faces, places, texture)
+    writer.write(file)
+
+
+def write_dressed_animation(
+    file: Path,
+    vertices: NDArray[np.floating],
+    faces: NDArray[np.int32],
+    fps: Fraction,
+    texture: Texture,
+    colours: NDArray[np.uint8] | None = None,
+    *,
+    name: str = "character",
+    progress: Progress | None = None,
+) -> None:
+    """Write a moving mesh (n, v, 3) of one connectivity with its pictures as one animated GLB; whole or not at all."""
+    apart, cut, places = _cut_at_seams(faces, texture)
+    sequence = mesh_sequence(vertices[:, apart], cut, fps, None if colours is None else colours[apart], name)
+    with replacing(file) as temporary:
+        write_animated_glb(temporary, sequence, progress, dress=lambda writer: _wear(writer, cut, places, texture))
+
+
+def same_texture(first: Texture, second: Texture | None) -> bool:
+    """Whether two meshes of the same faces wear the same pictures in the same way."""
+    if second is None or len(first.images) != len(second.images):
+        return False
+    arrays = ("coordinates", "corners", "image_of_face")
+    return all(np.array_equal(getattr(first, each), getattr(second, each)) for each in arrays) and all(
+        one == other or one.read_bytes() == other.read_bytes()
+        for one, other in zip(first.images, second.images, strict=True)
+    )
+
+
+def _cut_at_seams(
+    faces: NDArray[np.int32], texture: Texture
+) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.float32]]:
+    """Vertices with one place in the picture each: of which they are, faces of them, and those places."""
+    pairs = np.stack([faces.reshape(-1), texture.corners.reshape(-1)], axis=1)
     apart, number = np.unique(pairs, axis=0, return_inverse=True)
-    faces = number.reshape(-1, 3).astype(np.int32)
     places = np.vstack([texture.coordinates, [0.0, 0.0]])[apart[:, 1]]
     places[:, 1] = np.where(apart[:, 1] < 0, 0.0, 1.0 - places[:, 1])
-    normals = vertex_normals(mesh.vertices, mesh.faces)[apart[:, 0]]
-    colours = None if mesh.colours is None else mesh.colours[apart[:, 0]]
-    writer = GltfWriter()
-    whole = base_primitive(writer, mesh.vertices[apart[:, 0]], faces, colours, normals)
-    whole["attributes"]["TEXCOORD_0"] = writer.add(places.astype(np.float32), "VEC2", target=34962)
+    return apart[:, 0].astype(np.int64), number.reshape(-1, 3).astype(np.int32), places.astype(np.float32)
+
+
+def _wear(writer: GltfWriter, faces: NDArray[np.int32], places: NDArray[np.float32], texture: Texture) -> None:
+    """Split a scene's only primitive by its pictures, and put them on."""
+    mesh = writer.tree["meshes"][0]
+    (whole,) = mesh["primitives"]
+    whole["attributes"]["TEXCOORD_0"] = writer.add(places, "VEC2", target=34962)
     primitives: list[dict[str, Any]] = []
     worn: list[int] = []
     for image in (*range(len(texture.images)), -1):
@@ -140,16 +188,15 @@ def write_dressed_glb(file: Path, mesh: FrameMesh, texture: Texture) -> None:
         indices = writer.add(faces[mine].astype(np.uint32).reshape(-1, 1), "SCALAR", target=34963)
         primitives.append({**whole, "indices": indices, "material": len(worn)})
         worn.append(image)
-    scene(writer, {"primitives": primitives}, file.stem)
+    mesh["primitives"] = primitives
     plain = writer.tree["materials"][0]
-    writer.tree["materials"] = [_material(plain, image, writer) for image in worn]
+    writer.tree["materials"] = [_material(plain, image) for image in worn]
     writer.tree["images"] = [_embedded(writer, image) for image in texture.images]
     writer.tree["samplers"] = [{"wrapS": 10497, "wrapT": 10497}]
     writer.tree["textures"] = [{"source": k, "sampler": 0} for k in range(len(texture.images))]
-    writer.write(file)
 
 
-def _material(plain: dict[str, Any], image: int, writer: GltfWriter) -> dict[str, Any]:
+def _material(plain: dict[str, Any], image: int) -> dict[str, Any]:
     if image < 0:
         return plain
     surface = {**plain["pbrMetallicRoughness"], "baseColorTexture": {"index": image}}

@@ -24,11 +24,13 @@ from app.formats.tvm.frames import FrameMesh, Texture
 from app.formats.tvm.glb_dress import write_dressed_glb
 from app.formats.tvm.painting import painted
 from app.formats.tvm.ply_dress import write_dressed_ply
+from app.formats.tvm.usd_frames import write_usd_frames
+from app.formats.usd import USD_SUFFIXES
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
-FrameForm = Literal["ply", "obj", "off", "glb", "npz"]
-FRAME_FORMS: tuple[FrameForm, ...] = ("ply", "obj", "off", "glb", "npz")
+FrameForm = Literal["ply", "obj", "off", "glb", "npz", "usd"]
+FRAME_FORMS: tuple[FrameForm, ...] = ("ply", "obj", "off", "glb", "npz", "usd")
 
 
 def write_mesh_frames(
@@ -43,12 +45,13 @@ def write_mesh_frames(
 ) -> None:
     """Write frames one after another; whole or not at all.
 
-    "ply", "obj", "off" and "glb" make a folder of files ``name_0000.ply``; "npz" makes one file. PLY, OBJ and GLB keep
-    texture coordinates and the pictures as they are; OFF and npz have the texture's colours at the vertices.
+    "ply", "obj", "off" and "glb" make a folder of files ``name_0000.ply``; "npz" and "usd" make one file. PLY, OBJ and
+    GLB keep texture coordinates and the pictures as they are; OFF, npz and USD have the texture's colours at the
+    vertices.
 
     Parameters
     ----------
-    target : folder, or file for "npz".
+    target : folder, or file for "npz" and "usd" (.usd, .usda, .usdc).
     frames : Z up, metres; taken one at a time.
     count : how many there are.
     """
@@ -59,6 +62,12 @@ def write_mesh_frames(
     if form == "npz":
         with replacing(target) as temporary:
             _write_npz(temporary, frames, Fraction(fps).limit_denominator(100_000), count, report)
+        return
+    if form == "usd":
+        if target.suffix.lower() not in USD_SUFFIXES:
+            raise InputError(f"A USD stage cannot be written as {target.name}: use .usd, .usda or .usdc.")
+        with replacing(target) as temporary:
+            write_usd_frames(temporary, map(painted, frames), fps=fps, count=count, name=stem, progress=report)
         return
     digits = max(4, len(str(count - 1)))
     with replacing_numbered(target, stem, "." + form) as folder:
