@@ -87,7 +87,7 @@ def export(
     size: tuple[int, int],
     path: Path | None,
 ) -> None:
-    """Write the performance: a folder of PLY, OBJ, OFF or GLB, npz, one animated GLB, or an mp4 film."""
+    """Write the performance: a folder of PLY, OBJ, OFF or GLB, npz, one animated GLB, USD, or an mp4 film."""
     with closing(Session.open(project)) as session:
         _composed(console, session)
         note, wrote = "", str(form)
