@@ -35,7 +35,7 @@ class KeySheet(QDialog):
         column.addWidget(self._sheet(), 1)
         key_map().changed.connect(self._show)
         self._show()
-        self.resize(1120, 760)
+        self.resize(min(1360, max(parent.width() - 64, 960)), 760)
 
     def _head(self) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -77,7 +77,7 @@ class KeySheet(QDialog):
         body.setObjectName("scrollBody")
         across = QHBoxLayout(body)
         across.setContentsMargins(0, 0, 12, 0)
-        across.setSpacing(36)
+        across.setSpacing(24)
         self.headings: list[tuple[QLabel, list[KeyRow]]] = []
         for groups in _shared_out():
             column = QVBoxLayout()

@@ -42,6 +42,7 @@ class SettingsDialog(QDialog):
             "3D drawn by", tuple(VIEWPORTS), tuple(VIEWPORTS.values()), settings.viewport(), self._set_viewport
         )
         self.note = label("", "caption")
+        self.note.hide()
         self.column.addWidget(self.note)
         self.column.addWidget(separator())
         self._results()
@@ -110,6 +111,7 @@ class SettingsDialog(QDialog):
     def _set_viewport(self, kind: object) -> None:
         settings.settings().setValue("viewport", kind)
         self.note.setText("3D is drawn so when the program starts again.")
+        self.note.show()
 
     # results -----------------------------------------------------------------------------------------------------
 

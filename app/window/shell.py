@@ -39,6 +39,7 @@ class Shell(QMainWindow, NamedPages):
     def __init__(self, session: Session, *, viewport: Choice = "auto") -> None:
         super().__init__()
         self.opened: Opened | None = None
+        self.seen = False
         self.setWindowTitle("Motionwright")
         self.setWindowIcon(icons.application_icon())
         self.setMinimumSize(1000, 640)
@@ -55,7 +56,6 @@ class Shell(QMainWindow, NamedPages):
         self.drops = Drops(self)
         self._lanes, self._refresh = once(self, 60, self.show_lanes), once(self, 0, self.refresh)
         self.shown: tuple[int, QImage] | None = None
-        self._seen = False
         self.open_session(session)
 
     def _build(self, viewport: Choice) -> None:
@@ -157,14 +157,24 @@ class Shell(QMainWindow, NamedPages):
     def paintEvent(self, event: QPaintEvent) -> None:
         """Results are read, and work is taken up, once the window is on the screen."""
         super().paintEvent(event)
-        if not self._seen:
-            self._seen = True
-            QTimer.singleShot(0, self._take_up)
+        if not self.seen:
+            QTimer.singleShot(0, self, self._wake)
+
+    def _wake(self) -> None:
+        self.seen = True
+        for page in self.pages.workspaces.values():
+            page.asleep = False
+        self._take_up()
 
     def _take_up(self) -> None:
-        if self._seen and self.opened is not None:
+        if self.seen and self.opened is not None:
             self.opened.keeper.keep_up()
             self._refresh.start()
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether all is shown that was to be shown until now."""
+        return self.seen and not self._refresh.isActive() and not self._lanes.isActive()
 
     def lanes_soon(self) -> None:
         """Show the lanes anew in a moment, however often it is asked for."""
@@ -178,7 +188,7 @@ class Shell(QMainWindow, NamedPages):
     def refresh(self) -> None:
         """Show the state of the project: workspace in sight, lanes, counts."""
         project = self.project
-        if project is None or not self._seen:
+        if project is None or not self.seen:
             return
         self.in_sight().refresh()
         self.show_lanes()

@@ -28,6 +28,7 @@ def tie(shell: Shell, page: Workspace) -> None:
     page.run_wanted.connect(lambda: shell.do("propagate"))
     page.lanes_changed.connect(shell.lanes_soon)
     page.fit(shell.width())
+    page.asleep = not shell.seen
     if page is shell.pages.workspaces.get("character"):
         shell.character.inspector.go.connect(shell.navigator.go)
         shell.character.inspector.on_release.connect(shell.propagate_on_release)

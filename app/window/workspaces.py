@@ -28,6 +28,7 @@ class Workspace(QWidget):
     own_timeline : whether it brings a timeline of its own, so that the clip's is not shown beside it.
     errors : the bar in which its errors are told.
     aside : the column that folds away, where it has one.
+    asleep : while the window is not on the screen yet: nothing is read that would keep it from there.
     """
 
     hint = Signal(str)
@@ -37,6 +38,7 @@ class Workspace(QWidget):
     own_timeline = False
     errors: ErrorBar
     aside: FoldAway | None = None
+    asleep = False
 
     def attach(self, project: Project, loader: FrameLoader | None) -> None:
         """Take another project."""
@@ -49,6 +51,10 @@ class Workspace(QWidget):
 
     def close_view(self) -> None:
         """End every thread and render window; the workspace cannot be shown again."""
+
+    def looked_at(self) -> bool:
+        """Whether it is worth reading what would be shown."""
+        return self.isVisible() and not self.asleep
 
     def fit(self, window_width: int) -> None:
         """Fit into a window of another width."""

@@ -126,6 +126,7 @@ def open_shell(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> Iterator[
         QTest.qWaitForWindowExposed(shell)
         shell.activateWindow()  # where no window manager gives it the keys
         QTest.qWaitForWindowActive(shell)
+        wait_for(lambda: shell.at_rest)
         return shell
 
     yield open_

@@ -13,7 +13,7 @@ from app.window.fold_away import NARROW
 from app.window.settings import settings
 from app.window.shell import Shell
 from tests.window.clipping import assert_nothing_clipped
-from tests.window.conftest import settle
+from tests.window.conftest import settle, wait_for
 
 pytestmark = [pytest.mark.window, pytest.mark.slow, pytest.mark.xdist_group("window")]
 LEFT = Qt.MouseButton.LeftButton
@@ -103,6 +103,7 @@ def test_a_small_screen_has_room_for_the_window(shell: Shell) -> None:
     for page, key in PAGES:
         QTest.keyClick(shell, key)
         shell.resize(1024, 700)
+        wait_for(lambda page=page: page != "character" or shell.character.mesh.viewport is not None)
         settle(300)
         assert (shell.width(), shell.height()) == (1024, 700), page
         assert_nothing_clipped(shell)

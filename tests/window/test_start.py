@@ -6,14 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, QObject, Qt
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QWidget
 
 from app.actions import performing
 from app.actions.session import Session
 from app.stages.stage import Stage
 from app.window.shell import Shell
-from tests.window.conftest import wait_for
+from tests.window.conftest import settle, wait_for
 from tests.window.small_performance import write_take
 
 pytestmark = [pytest.mark.window, pytest.mark.slow, pytest.mark.xdist_group("window")]
@@ -34,6 +35,27 @@ def test_a_page_is_made_when_it_is_first_shown(shell: Shell) -> None:
     assert shell.performance.project is shell.project
     QTest.keyClick(shell, Qt.Key.Key_F2)
     assert shell.pages.currentWidget() is shell.character
+
+
+def test_making_a_page_opens_no_window(shell: Shell, qapp: QApplication) -> None:
+    """No part of a page is shown on its own before it lies in its place, and the keys stay with the window."""
+    seen: list[str] = []
+
+    class Watch(QObject):
+        def eventFilter(self, thing: QObject, event: QEvent) -> bool:
+            if event.type() == QEvent.Type.Show and isinstance(thing, QWidget) and thing.isWindow():
+                seen.append(type(thing).__name__)
+            return False
+
+    watch = Watch()
+    qapp.installEventFilter(watch)
+    for key in (Qt.Key.Key_F2, Qt.Key.Key_F3):
+        QTest.keyClick(shell, key)
+        settle(50)
+    qapp.removeEventFilter(watch)
+    assert set(shell.pages.workspaces) == {"video", "character", "performance"}
+    assert not seen
+    assert shell.isActiveWindow()
 
 
 def test_a_page_made_later_speaks_to_the_window(shell: Shell) -> None:
@@ -63,6 +85,7 @@ def test_results_are_read_once_the_window_is_seen(
         assert not shell.video._marks
         assert not read
         shell.show()
+        assert not read, "showing it reads nothing either: that waits for the first paint"
         wait_for(lambda: len(shell.video._marks) == len(session.document.tracks))
     finally:
         shell.close()

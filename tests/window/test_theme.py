@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QSize
@@ -145,3 +146,10 @@ def test_another_look_is_seen_in_icons_that_are_there(qapp: QApplication) -> Non
                 assert QColor(getattr(look, token)).name() in inked, look.name
     finally:
         theme.apply(qapp, theme.DARK)
+
+
+@pytest.mark.parametrize("look", LOOKS, ids=lambda look: look.name)
+def test_a_check_is_seen_on_its_box(look: theme.Theme) -> None:
+    """The mark is drawn in the colour for what stands on the accent, in either look."""
+    (check,) = re.findall(r'url\("([^"]+check[^"]+)"\)', theme.stylesheet(look))
+    assert look.on_accent in Path(check).read_text()

@@ -295,3 +295,24 @@ def test_a_row_of_the_timeline_selects_its_point(shell: Shell) -> None:
     QTest.mouseClick(lanes, LEFT, pos=at(lanes.axis.x(13), top + height / 2))
     assert shell.project.track_id == row.id
     assert shell.project.frame == 13
+
+
+def test_what_is_done_takes_one_line_beside_a_point(shell: Shell) -> None:
+    """With a point chosen the list of steps keeps to what is not done; without one it has all of them again."""
+    rows = shell.video.steps._rows
+
+    def titles() -> list[str]:
+        return [row[1].text() for row in rows if row[1].isVisible()]
+
+    settle(50)
+    everything = titles()
+    assert {"Points", "Camera", "Ground", "Pairs", "Motion"} <= set(everything)
+    shell.project.select_track(shell.project.document.tracks[0].id)
+    settle(50)
+    assert titles()[0] == "Done"
+    assert "camera" in rows[0][2].text()
+    assert "Masks" in titles(), "they are not drawn yet"
+    assert "Camera" not in titles()
+    shell.project.select_track("")
+    settle(50)
+    assert titles() == everything

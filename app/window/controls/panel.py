@@ -18,8 +18,8 @@ class Panel(QFrame):
         self.column.setContentsMargins(1, 1, 1, 1)
         self.column.setSpacing(0)
         self.header = Header(title, caption, header_height)
-        self.header.setVisible(bool(title))
         self.column.addWidget(self.header)
+        self.header.setVisible(bool(title))  # shown before it lies in the panel it would be a window for a moment
 
 
 class ScrollColumn(QScrollArea):

@@ -18,14 +18,14 @@ from app.window.newest_call import NewestCall
 from app.window.project import Project
 
 LACKING = {
-    "motion": ("The motion has not been solved yet: rendering solves it first.", "Solve the motion", "propagate"),
+    "motion": ("The motion is not solved yet: rendering solves it first.", "Solve the motion", "propagate"),
     "some motion": (
-        "Characters whose motion has not been solved yet are left out here: rendering solves it first.",
+        "Motions that are not solved yet are left out; rendering solves them.",
         "Solve the motion",
         "propagate",
     ),
     "comparison": (
-        "What is not computed yet is left out here: rendering computes it first.",
+        "What is not computed yet is left out; rendering computes it.",
         "Compute them now",
         "comparisons",
     ),

@@ -149,11 +149,18 @@ class StepList(QWidget):
         last.addWidget(self.ground_button)
         self._column.addLayout(last)
 
-    def show_steps(self, steps_: list[Step]) -> None:
-        """Show the steps as they stand."""
+    def show_steps(self, steps_: list[Step], *, brief: bool = False) -> None:
+        """Show the steps as they stand; ``brief`` says of all that are done in one line, to leave room for a point."""
+        done = [step for step in steps_ if step.state == "done" and not step.action] if brief else []
+        if len(done) > 1:
+            left = [step for step in steps_ if step not in done]
+            steps_ = [Step("Done", ", ".join(step.title.lower() for step in done), "done"), *left]
         if steps_ == self._shown:
             return
         self._shown = steps_
+        for number, widgets in enumerate(self._rows):
+            for widget in widgets:
+                widget.setVisible(number < len(steps_))
         while len(self._rows) < len(steps_):
             row = QHBoxLayout()
             row.setSpacing(8)

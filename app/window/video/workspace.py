@@ -180,7 +180,8 @@ class VideoWorkspace(Workspace):
         self.refresh()
 
     def showEvent(self, event: object) -> None:
-        """Say what the mouse does when the workspace comes into sight."""
+        """Show what has changed when the workspace comes into sight, and say what the mouse does."""
+        self.refresh()
         self.hint.emit(HINTS[self.tool])
 
     def resizeEvent(self, event: object) -> None:
@@ -194,7 +195,7 @@ class VideoWorkspace(Workspace):
     def refresh(self) -> None:
         """Show the project as it is; nothing is read for a page that nobody sees."""
         project, reading = self.project, self.reading
-        if project is None or reading is None or not self.isVisible():
+        if project is None or reading is None or not self.looked_at():
             return
         edits_by_mouse.drop_old_paths(self.shown, reading, project)
         frame = self.frame
@@ -214,7 +215,7 @@ class VideoWorkspace(Workspace):
         self.inspector.show_track(project, known, frame)
         self.inspector.show_points([(each, reading.track(each)) for each in project.document.tracks])
         self.right.show_proposals(self.proposals.count(project))
-        self.steps.show_steps(steps(project))
+        self.steps.show_steps(steps(project), brief=bool(project.track_id))
         self.steps.show_fallbacks(ground_edits.lead(project), ground_edits.fallbacks(project))
         self.canvas.update()
 
