@@ -158,8 +158,8 @@ def test_cuts_say_what_can_be_done() -> None:
     assert (advice(cut), cut.apart) == ("", False)
     assert (tone(poor), poor.apart) == ("warn", True), "the mean step hides a limb that jumps"
     assert "far apart" in advice(poor)
-    assert "Nothing nearer leads there" in advice(poor)
-    assert "switch Blend on" in advice(poor)
+    assert "Switch Blend on" in advice(poor)
+    assert "Nothing nearer leads there" in told(poor)
     assert not replace(poor, waiting=True).apart, "in-betweens are still being made"
     bridged = replace(poor, blended=0.8, frames=8)
     assert (tone(bridged), bridged.apart) == ("ok", False)
@@ -167,10 +167,10 @@ def test_cuts_say_what_can_be_done() -> None:
     refused = replace(cut, refused=True, reason="The cut is left as it is: why.")
     assert (tone(refused), refused.apart) == ("warn", True)
     assert "Blend" not in advice(refused)
-    assert "put a motion between" in told(refused)
+    assert "Put a motion between" in told(refused)
     seen = replace(cut, after=1.9)
     assert (tone(seen), seen.apart) == ("warn", False)
-    assert "switch Blend on" in advice(seen)
+    assert "Switch Blend on" in advice(seen)
 
 
 def test_words_of_the_preview_go_on_in_another_line(qapp: object) -> None:

@@ -83,6 +83,12 @@ def test_the_list_by_keys(composed: Shell) -> None:
     """Down, End and Home choose, Enter plays as captured, Delete removes; undo brings it back."""
     page, document = composed.pages.in_sight, composed.project.document
     first, second = (each.id for each in document.sequences)
+    tab_to(page.library.sections[0].head)
+    press(ENTER)
+    tab_to(page.library.facts.level)
+    press(Qt.Key.Key_Space)
+    assert composed.project.document.sequence(page.state.sequence_id).level
+    press(Qt.Key.Key_Z, CONTROL)
     tab_to(page.library.cards)
     press(Qt.Key.Key_Home)
     press(DOWN)

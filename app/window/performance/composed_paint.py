@@ -15,7 +15,7 @@ from app.window.timeline.lanes import RULER
 
 Thumbnail = Callable[[str, int], QImage | None]
 LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
-OTHERWISE = "put a motion between, or take another path"
+OTHERWISE = "a motion between, or take another path"
 LOOPED = 92.0
 """Pixels that the words of the way back to the start take, left of its bar."""
 
@@ -210,14 +210,13 @@ def tone(joint: Joint) -> str:
 def advice(joint: Joint) -> str:
     """What can be done about a cut; empty where nothing needs to be."""
     if joint.apart:
-        only = " Nothing nearer leads there." if joint.poor else ""
-        blend = "" if joint.refused else "switch Blend on, "
-        return f"The two poses are far apart: a limb may jump.{only} To mend it: {blend}{OTHERWISE}."
+        blend = "Put" if joint.refused else "Switch Blend on, put"
+        return f"The poses are far apart: a limb may jump. {blend} {OTHERWISE}."
     if joint.seen:
-        longer = "blend it longer, " if joint.blended is not None else "switch Blend on, "
-        return f"The step is seen. To mend it: {longer}{OTHERWISE}."
+        longer = "Blend it longer" if joint.blended is not None else "Switch Blend on"
+        return f"The step is seen. {longer}, put {OTHERWISE}."
     if joint.poor and joint.blended is not None:
-        return "The two poses are far apart; the in-betweens bridge them: look whether they please."
+        return "The poses are far apart; in-betweens bridge them: look whether they please."
     return ""
 
 
@@ -237,6 +236,8 @@ def told(joint: Joint) -> str:
         lines.append(joint.reason)
     if joint.kind == "cut" and (words := advice(joint)):
         lines.append(words)
+    if joint.poor:
+        lines.append("Nothing nearer leads there.")
     return "\n".join(lines)
 
 

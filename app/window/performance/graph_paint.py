@@ -178,15 +178,11 @@ class Taken:
 
     def take(self, rooms: list[QRectF]) -> tuple[float, QRectF]:
         """The room that covers least, the first of equals, and how many pixels it covers; it is not kept."""
-        best = (math.inf, rooms[0])
-        for room in rooms:
-            low, high = np.maximum(self._rows[:, :2], _row(room)[:2]), np.minimum(self._rows[:, 2:], _row(room)[2:])
-            covered = float(np.prod(np.clip(high - low, 0.0, None), axis=1).sum())
-            if covered < best[0]:
-                best = (covered, room)
-            if not covered:
-                break
-        return best
+        rows = np.array([_row(room) for room in rooms])[:, None]
+        low, high = np.maximum(self._rows[:, :2], rows[..., :2]), np.minimum(self._rows[:, 2:], rows[..., 2:])
+        covered = np.prod(np.clip(high - low, 0.0, None), axis=2).sum(axis=1)
+        best = int(covered.argmin())
+        return float(covered[best]), rooms[best]
 
     def keep(self, room: QRectF) -> None:
         """Let others keep clear of it too."""

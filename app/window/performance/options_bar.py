@@ -10,6 +10,8 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 from app.model.edits import performance as edits
 from app.window import theme
 from app.window.controls import Chooser, Elided, NumberField, NumberRange, toggle
+from app.window.performance.blocks import joint_of
+from app.window.performance.composed_paint import advice
 from app.window.performance.editing import PerformanceEditing
 from app.window.performance.state import PerformanceState
 
@@ -118,7 +120,7 @@ class OptionsBar(QWidget):
         self.blend.setEnabled(choice.align)
         self.blend_seconds.set_value(choice.blend_seconds)
         self.blend_seconds.setEnabled(choice.align and choice.blend)
-        self.note.setText(state.performance.note if state.performance is not None else "")
+        self.note.setText(self._words())
         style = f"color: {theme.active().warn};"
         if style != self.note.styleSheet():
             self.note.setStyleSheet(style)
@@ -139,6 +141,14 @@ class OptionsBar(QWidget):
             self.paths.setItemData(number, self._way(path), Qt.ItemDataRole.ToolTipRole)
         self.paths.setCurrentIndex(min(self.state.document.performance.alternative, len(texts) - 1))
         self.paths.setEnabled(len(texts) > 1)
+
+    def _words(self) -> str:
+        """Why a length is not met; else what can be done about the chosen cut."""
+        performance, cut = self.state.performance, self.state.cut
+        if performance is None or performance.note:
+            return "" if performance is None else str(performance.note)
+        known = 0 <= cut < len(performance.cuts) and performance.cuts[cut].kind == "cut"
+        return advice(joint_of(self.state, performance, cut)) if known else ""
 
     def _way(self, path: Any) -> str:
         """The motions of a path by their names."""

@@ -68,7 +68,7 @@ class Parts:
         """Let Tab lead through all that takes the keys, part by part, from the left and from above."""
         page = self._page
         panels: list[QWidget] = [page.library, page.database, page.graph, page.preview, page.matrix]
-        panels += [page.composed.transport, page.composed.options, page.composed.view, page.composed.note, page.strip]
+        panels += [page.composed.transport, page.composed.options, page.composed.view, page.strip]
         stops = [each for panel in panels for each in _stops(panel)]
         for before, after in pairwise(stops):
             QWidget.setTabOrder(before, after)

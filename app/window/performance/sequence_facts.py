@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QToolButton, QVBoxLayout, 
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence
 from app.window.controls import Chooser, NumberField, NumberRange, Row, button, icon_button, label
+from app.window.controls.own_keys import PressKeys
 from app.window.performance.state import PerformanceState
 
 RATE = NumberRange(0.1, 1000.0, 0.1, 2, "fps")
@@ -58,6 +59,8 @@ class SequenceFacts(QWidget):
         self.level = QCheckBox("Level the ground")
         self.level.setToolTip("Take out what the performer climbs, so that it joins motions on the flat")
         self.level.toggled.connect(self._level)
+        self.level.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        PressKeys(self.level)
         column.addWidget(Row("", self.level, width=LABEL))
         self.statistics = label("", "caption")
         self.statistics.setWordWrap(True)

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 from app.model.edits import sequences
 from app.model.performance import CapturedSequence
 from app.window.controls import Chooser, NumberField, NumberRange, Row, button, label
+from app.window.controls.own_keys import PressKeys
 from app.window.performance.state import PerformanceState
 from app.window.performance.strip_colours import structure_of
 
@@ -54,6 +55,8 @@ class SequenceStructure(QWidget):
         self.cyclic = QCheckBox("Everything repeats")
         self.cyclic.setToolTip("Every stretch that is long enough counts as repeating")
         self.cyclic.toggled.connect(lambda on: self._change(force_cyclic=on))
+        self.cyclic.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        PressKeys(self.cyclic)
         column.addWidget(Row("", self.cyclic, width=WIDE))
         self.reason = label("", "caption")
         self.reason.setWordWrap(True)
