@@ -22,7 +22,7 @@ def read_ply(data: bytes, name: str) -> MeshFile:
     if not all(axis in vertex for axis in "xyz"):
         raise InputError(f"The PLY file {name} has no vertices with x, y and z.")
     try:
-        vertices = np.stack([np.asarray(vertex[axis], np.float64) for axis in "xyz"], axis=1).reshape(-1, 3)
+        vertices = _columns(vertex, ("x", "y", "z"), np.float64)
     except (ValueError, TypeError) as error:
         raise InputError(f"The PLY file {name} has positions that are lists: it is damaged.") from error
     face = tables.get("face", {})
@@ -30,7 +30,9 @@ def read_ply(data: bytes, name: str) -> MeshFile:
     if lists is None:
         faces = np.zeros((0, 3), np.int64)
     elif isinstance(lists, np.ndarray):
-        faces = fans(lists.astype(np.int64))
+        # Triangles of whole numbers, which nearly every file has, are the faces already.
+        ready = lists.ndim == 2 and lists.shape[1] == 3 and lists.dtype.kind == "i"
+        faces = np.ascontiguousarray(lists, np.int32) if ready else fans(lists.astype(np.int64))
     else:
         faces = fan(lists)
     return MeshFile(vertices, to_int32(faces, name), _colors(vertex), None, name)
@@ -90,6 +92,18 @@ def fans(polygons: NDArray[np.int64]) -> NDArray[np.int64]:
         return np.zeros((0, 3), np.int64)
     fans = [polygons[:, [0, k, k + 1]] for k in range(1, corners - 1)]
     return np.stack(fans, axis=1).reshape(-1, 3)
+
+
+def _columns(table: Columns, names: tuple[str, ...], kind: Any = None) -> NDArray[Any]:
+    """Columns of a table side by side (n, k), each copied once."""
+    first = np.asarray(table[names[0]])
+    together = np.empty((len(first), len(names)), first.dtype if kind is None else kind)
+    for k, name in enumerate(names):
+        column = np.asarray(table[name])
+        if column.shape != first.shape or column.ndim != 1:
+            raise ValueError(name)
+        together[:, k] = column
+    return together
 
 
 def _colors(vertex: Columns) -> NDArray[np.uint8] | None:

@@ -97,59 +97,61 @@ def foot_cue(vertices: Array, areas: Array, lowest: float, height: float) -> Arr
     (2,) float64
         Horizontal vector in body heights, about 0.05 long for a shoe on the ground; (0, 0) where nothing is seen.
     """
+    # The few vertices that count, once: the feet are a small part of a body.
     n = len(vertices)
+    ankles, soles_of = np.empty(n, np.int64), np.empty(n, np.int64)
+    ankle_count, sole_count = 0, 0
     low_x, low_y, high_x, high_y, total = 0.0, 0.0, 0.0, 0.0, 0.0
-    span = -1.0
-    # The first guess of the two feet: the ankle point furthest from the ankles' mean, and the one furthest from that.
     for i in range(n):
         z = (vertices[i, 2] - lowest) / height
         if 0.06 <= z < 0.14:
             low_x += areas[i] * vertices[i, 0]
             low_y += areas[i] * vertices[i, 1]
             total += areas[i]
+            ankles[ankle_count] = i
+            ankle_count += 1
+        elif z < 0.035:
+            soles_of[sole_count] = i
+            sole_count += 1
     cue = np.zeros(2)
     if total <= 0.0:
         return cue
     mean_x, mean_y = low_x / total, low_y / total
+    # The first guess of the two feet: the ankle point furthest from the ankles' mean, and the one furthest from that.
     for turn in range(2):
         from_x, from_y = (mean_x, mean_y) if turn == 0 else (low_x, low_y)
         span = -1.0
-        for i in range(n):
-            z = (vertices[i, 2] - lowest) / height
-            if 0.06 <= z < 0.14:
-                square = (vertices[i, 0] - from_x) ** 2 + (vertices[i, 1] - from_y) ** 2
-                if square > span:
-                    span = square
-                    if turn == 0:
-                        low_x, low_y = vertices[i, 0], vertices[i, 1]
-                    else:
-                        high_x, high_y = vertices[i, 0], vertices[i, 1]
+        for i in ankles[:ankle_count]:
+            square = (vertices[i, 0] - from_x) ** 2 + (vertices[i, 1] - from_y) ** 2
+            if square > span:
+                span = square
+                if turn == 0:
+                    low_x, low_y = vertices[i, 0], vertices[i, 1]
+                else:
+                    high_x, high_y = vertices[i, 0], vertices[i, 1]
     for _ in range(8):
         ax, ay, aw, bx, by, bw = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for i in range(n):
-            z = (vertices[i, 2] - lowest) / height
-            if 0.06 <= z < 0.14:
-                x, y = vertices[i, 0], vertices[i, 1]
-                if (x - low_x) ** 2 + (y - low_y) ** 2 < (x - high_x) ** 2 + (y - high_y) ** 2:
-                    ax, ay, aw = ax + areas[i] * x, ay + areas[i] * y, aw + areas[i]
-                else:
-                    bx, by, bw = bx + areas[i] * x, by + areas[i] * y, bw + areas[i]
+        for i in ankles[:ankle_count]:
+            x, y = vertices[i, 0], vertices[i, 1]
+            if (x - low_x) ** 2 + (y - low_y) ** 2 < (x - high_x) ** 2 + (y - high_y) ** 2:
+                ax, ay, aw = ax + areas[i] * x, ay + areas[i] * y, aw + areas[i]
+            else:
+                bx, by, bw = bx + areas[i] * x, by + areas[i] * y, bw + areas[i]
         if aw > 0.0:
             low_x, low_y = ax / aw, ay / aw
         if bw > 0.0:
             high_x, high_y = bx / bw, by / bw
     sx, sy, sw = np.zeros(2), np.zeros(2), np.zeros(2)
     near = (0.13 * height) ** 2
-    for i in range(n):
-        if (vertices[i, 2] - lowest) / height < 0.035:
-            x, y = vertices[i, 0], vertices[i, 1]
-            first = (x - low_x) ** 2 + (y - low_y) ** 2
-            second = (x - high_x) ** 2 + (y - high_y) ** 2
-            foot = 0 if first < second else 1
-            if min(first, second) < near:
-                sx[foot] += areas[i] * x
-                sy[foot] += areas[i] * y
-                sw[foot] += areas[i]
+    for i in soles_of[:sole_count]:
+        x, y = vertices[i, 0], vertices[i, 1]
+        first = (x - low_x) ** 2 + (y - low_y) ** 2
+        second = (x - high_x) ** 2 + (y - high_y) ** 2
+        foot = 0 if first < second else 1
+        if min(first, second) < near:
+            sx[foot] += areas[i] * x
+            sy[foot] += areas[i] * y
+            sw[foot] += areas[i]
     soles = sw[0] + sw[1]
     if soles <= 0.0:
         return cue
@@ -175,9 +177,9 @@ def surface_samples(vertices: Array, faces: Faces, count: int) -> NDArray[np.flo
     running = np.empty(len(faces))
     total = 0.0
     for f in range(len(faces)):
-        a, b, c = vertices[faces[f, 0]], vertices[faces[f, 1]], vertices[faces[f, 2]]
-        ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-        wx, wy, wz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        ux, uy, uz = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
+        wx, wy, wz = vertices[k, 0] - vertices[i, 0], vertices[k, 1] - vertices[i, 1], vertices[k, 2] - vertices[i, 2]
         nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
         total += np.sqrt(nx * nx + ny * ny + nz * nz)
         running[f] = total
