@@ -18,7 +18,10 @@ LARGE = 1 << 26
 
 
 class ResultCache:
-    """Finds results that were computed before, whatever was edited in between."""
+    """Finds results that were computed before, whatever was edited in between.
+
+    ``turns`` grows with every result that is put in: while it stands, what was not there is not there.
+    """
 
     def __init__(self, store: ResultStore | None = None, budget: int = BUDGET) -> None:
         self.store = store
@@ -27,6 +30,7 @@ class ResultCache:
         self._bytes = 0
         self._lock = threading.Lock()
         self.storing_failed: str | None = None
+        self.turns = 0
 
     def __contains__(self, stage: Stage) -> bool:
         return stage.key in self._held or (self.store is not None and stage.stored and stage.key in self.store)
@@ -59,6 +63,7 @@ class ResultCache:
             except InputError as error:
                 self.storing_failed = str(error)
         self._hold(stage.key, value)
+        self.turns += 1
 
     def _hold(self, key: str, value: Any) -> None:
         size = size_of(value)

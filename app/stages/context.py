@@ -16,10 +16,19 @@ class Token:
 
     def __init__(self) -> None:
         self._event = threading.Event()
+        self._waiting: list[Callable[[], object]] = []
 
     def cancel(self) -> None:
         """Ask the computation to stop."""
         self._event.set()
+        for wake in tuple(self._waiting):
+            wake()
+
+    def wakes(self, wake: Callable[[], object]) -> None:
+        """Have ``wake`` called by a cancel, from whatever thread; more than once is no harm."""
+        self._waiting.append(wake)
+        if self.cancelled:
+            wake()
 
     @property
     def cancelled(self) -> bool:

@@ -80,9 +80,16 @@ def sketch(document: Document, slot: str, turn: str) -> Stage:
         return Stage(name, LABEL, _first, blocked=tracking.NO_CLIP)
     needs: tuple[Stage, ...] = (plan(document), scene.cameras(document), tracking.masks(document))
     if turn == "second":
-        needs += tuple(sketch(document, str(k), "first") for k in range(slots(clip.frame_count)))
+        needs += _sketches(document, "first")
     compute = _first if turn == "first" else _second
     return Stage(name, LABEL, compute, (clip, WIDTH, int(slot)), needs, version=2, weight=KEY_SECONDS / 2)
+
+
+@once
+def _sketches(document: Document, turn: str) -> tuple[Stage, ...]:
+    """Those of all key frames, looked up once and not once for each of those that stand on them."""
+    count = slots(document.clip.frame_count) if document.clip is not None else 0
+    return tuple(sketch(document, str(k), turn) for k in range(count))
 
 
 @once
@@ -92,7 +99,7 @@ def depth(document: Document) -> Stage:
     if clip is None:
         return Stage("depth", LABEL, _depth, blocked=tracking.NO_CLIP)
     needs: tuple[Stage, ...] = (plan(document), scene.cameras(document), tracking.masks(document))
-    needs += tuple(sketch(document, str(k), "second") for k in range(slots(clip.frame_count)))
+    needs += _sketches(document, "second")
     return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=4, weight=2.0)
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import threading
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, InvalidStateError, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,6 +21,8 @@ from app.stages.stage import Stage
 from imitation.errors import Cancelled, InputError
 from imitation.progress import Progress
 
+LOOK = 0.05
+"""Seconds after which a job looks again for results that others have put there; a cancel wakes it at once."""
 StageState = Literal["fresh", "stale", "running", "failed", "blocked", "missing"]
 
 
@@ -32,6 +35,10 @@ class Runner:
     media : opens what the document refers to.
     executor : anything with the interface of ``concurrent.futures.Executor``; None makes threads. Stages that run
         in other processes report no progress within a stage and stop only between stages.
+
+    Attributes
+    ----------
+    turns : grows whenever a stage begins, ends or is given up: while it stands, so do the states.
     """
 
     def __init__(self, cache: ResultCache, media: Media, executor: Executor | None = None) -> None:
@@ -44,6 +51,7 @@ class Runner:
         self._latest: dict[str, str] = {}
         self._jobs: set[Job] = set()
         self._lock = threading.RLock()
+        self.turns = 0
 
     def state(self, stage: Stage) -> StageState:
         """Say how a stage stands."""
@@ -72,6 +80,7 @@ class Runner:
         """Forget what failed: what it failed for is there now."""
         with self._lock:
             self._failed.clear()
+            self.turns += 1
 
     def start(self, label: str, targets: tuple[Stage, ...], listener: Listener | None = None) -> Job:
         """Compute what is missing for these stages in the background."""
@@ -143,6 +152,8 @@ class Runner:
             order += [stage for stage in target.closure() if stage.key not in {s.key for s in order}]
         wanted = self._missing(job, order)
         pending: dict[Future[Any], Stage] = {}
+        stop: Future[None] = Future()
+        job.token.wakes(lambda: _settled(stop))
         try:
             while wanted or pending:
                 job.token.check()
@@ -150,8 +161,8 @@ class Runner:
                 for stage in ready:
                     wanted.remove(stage)
                     pending[self._submit(job, stage)] = stage
-                done, _ = wait(pending, timeout=0.05, return_when=FIRST_COMPLETED)
-                for future in done:
+                done, _ = wait([*pending, stop], timeout=LOOK, return_when=FIRST_COMPLETED)
+                for future in done - {stop}:
                     stage = pending.pop(future)
                     future.result()
                     job.report(stage, 1.0)
@@ -187,6 +198,7 @@ class Runner:
             token = Token()
             running = _Running(token, {job})
             self._running[stage.key] = running
+            self.turns += 1
             if self._local:
                 running.future = self._executor.submit(self._compute_here, stage, running)
             else:
@@ -221,6 +233,7 @@ class Runner:
         if error is None:
             self.cache.put(stage, future.result())
         with self._lock:
+            self.turns += 1
             if self._running.get(stage.key) is running:
                 del self._running[stage.key]
             if error is None:
@@ -245,6 +258,7 @@ class Runner:
             running.token.cancel()
             if self._local and running.future.cancel():
                 del self._running[stage.key]
+                self.turns += 1
                 return False
             return True
 
@@ -254,6 +268,12 @@ class _Running:
 
     def __init__(self, token: Token, jobs: set[Job]) -> None:
         self.token, self.jobs = token, jobs
+
+
+def _settled(future: Future[None]) -> None:
+    """Settle a future that only wakes whoever waits for it."""
+    with contextlib.suppress(InvalidStateError):
+        future.set_result(None)
 
 
 def _compute_there(compute: Any, inputs: tuple[Any, ...], results: list[Any], found: dict[MediaRef, Path]) -> Any:

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from app.stages.cache import ResultCache
-from app.stages.context import Context
+from app.stages.context import Context, Token
 from app.stages.job import Job, Silent
 from app.stages.media import Media
 from app.stages.runner import Runner
@@ -144,6 +144,21 @@ def test_cancel_is_quick_and_keeps_what_is_done(runner: Runner) -> None:
     assert job.state == "cancelled"
     assert runner.state(done) == "fresh"
     assert runner.state(long) == "missing"
+
+
+def test_a_cancel_wakes_the_job_at_once(runner: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It does not wait until the job looks round by itself; one that came before it waits is heard as well."""
+    monkeypatch.setattr("app.stages.runner.LOOK", 60.0)
+    job = runner.start("long", (Stage("long", "long", slow, (30.0,)),))
+    while runner.state(job.targets[0]) != "running":
+        time.sleep(0.005)
+    job.cancel()
+    assert job.wait(20)
+    assert job.state == "cancelled"
+    token, heard = Token(), []
+    token.cancel()
+    token.wakes(lambda: heard.append(1))
+    assert heard
 
 
 def test_two_jobs_share_a_stage_and_one_may_leave(runner: Runner) -> None:
