@@ -14,6 +14,8 @@ from app.model.edits import contacts
 from app.model.tracks import Track
 from app.model.values import Interval
 from app.stages.stage import Stage
+from app.window import theme
+from app.window.moment import Moment
 from app.window.project import Project
 from app.window.timeline import Bar, Curve, Diamond, Lane, Row
 
@@ -22,6 +24,7 @@ FAR_OFF = 1.0
 """Pixels of reprojection error above which a frame's camera deserves a look."""
 Proposals = Mapping[str, Sequence[Interval]]
 _CURVES: WeakKeyDictionary[Project, Curve] = WeakKeyDictionary()
+_TRACKS: WeakKeyDictionary[Project, dict[int, tuple[tuple[Moment, str, str], Lane]]] = WeakKeyDictionary()
 STATE_COLOURS = {"fresh": "ok", "running": "accent", "stale": "warn", "failed": "err", "missing": "line2"}
 VIDEO_LEGEND = (
     ("click, mask", "text", "diamond"),
@@ -65,6 +68,15 @@ def _pictures(project: Project) -> Lane:
 
 
 def _tracks(project: Project, shown: int) -> Lane:
+    """The points, made anew where anything that they show may have changed: not for every frame that streams in."""
+    now = (Moment.of(project.session), project.track_id, theme.active().name)
+    kept = _TRACKS.setdefault(project, {})
+    if shown not in kept or kept[shown][0] != now:
+        kept[shown] = (now, _tracks_now(project, shown))
+    return kept[shown][1]
+
+
+def _tracks_now(project: Project, shown: int) -> Lane:
     rows = tuple(_track_row(project, track) for track in project.document.tracks)
     count = len(rows)
     title = f"Points, {shown} of {count}" if count > shown else f"Points, {count}"
@@ -81,8 +93,6 @@ def _track_row(project: Project, track: Track) -> Row:
 
 
 def _track_colour(track: Track) -> str:
-    from app.window import theme
-
     tracks = theme.active().tracks
     return tracks[track.colour % len(tracks)]
 

@@ -15,6 +15,7 @@ class PictureNotes(QWidget):
 
     def __init__(self, over: QWidget) -> None:
         super().__init__(over)
+        self._over = over
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.text, self.message, self.right = "", "", ("", "text")
         self._fade = QTimer(self)
@@ -35,20 +36,26 @@ class PictureNotes(QWidget):
         text = f"Frame {frame} of {count - 1}  ·  {seconds:.2f} s"
         if text != self.text:
             self.text = text
-            self.update()
+            self._paint_soon()
 
     def show_right(self, text: str, token: str = "text") -> None:
         """Show a short state in the other corner."""
         if (text, token) != self.right:
             self.right = (text, token)
-            self.update()
+            self._paint_soon()
 
     def say(self, message: str) -> None:
         """Show a message for a moment."""
         self.message = message
         if message:
             self._fade.start()
-        self.update()
+        self._paint_soon()
+
+    def _paint_soon(self) -> None:
+        """Paint it with what it lies over, which is painted once then, and not once more for the plates alone."""
+        self._over.update()
+        if self.internalWinId():
+            self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the plates."""

@@ -22,6 +22,8 @@ from app.window.work import Ears, details
 from imitation.errors import InputError, NoSolution
 from imitation.progress import Progress
 
+SPOKEN = 50
+"""Milliseconds between two words on the progress of work: it reports far more often, and each repaints the bar."""
 SEARCHING = "Searching the best path"
 """Work whose failure is no accident: where there is no path the timeline of the performance says so, and what helps."""
 
@@ -51,6 +53,10 @@ class Project(QObject):
         self.vertex = -1
         self.progress: dict[Job, tuple[float, str]] = {}
         self._afterwards: Callable[[], object] | None = None
+        self._progress = QTimer(self)
+        self._progress.setSingleShot(True)
+        self._progress.setInterval(SPOKEN)
+        self._progress.timeout.connect(self.work_progressed)
         self._ears = Ears(self)
         self._ears.progressed_.connect(self._progressed)
         self._ears.partial_.connect(self._partial)
@@ -233,7 +239,8 @@ class Project(QObject):
     def _progressed(self, job: Job, fraction: float, label: str) -> None:
         if job in self.progress:
             self.progress[job] = (fraction, label)
-            self.work_progressed.emit()
+            if not self._progress.isActive():
+                self._progress.start()
 
     def _partial(self, job: Job, stage: Stage, value: Any) -> None:
         if job in self.progress and not job.token.cancelled:
@@ -244,6 +251,7 @@ class Project(QObject):
 
     def _finished(self, job: Job) -> None:
         self.progress.pop(job, None)
+        self._progress.stop()
         known = isinstance(job.error, InputError | ModelError | NoSolution)
         if job.state == "failed" and not (known and job.label == SEARCHING):
             sentence = job.sentence if known else f"{job.label} stopped by an error of the program."
@@ -255,6 +263,7 @@ class Project(QObject):
     def close(self) -> None:
         """Stop all work and close the session; whoever asked has saved, or chosen to throw away, what was unsaved."""
         self.closing.emit()
+        self._progress.stop()
         self._forget()
         self.progress.clear()
         with contextlib.suppress(InputError):

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.model.tracks import Track
+from app.window.moment import Moment
 from app.window.project import Project
 
 Array = NDArray[np.float64]
@@ -33,6 +34,8 @@ class Reading:
     def __init__(self, project: Project) -> None:
         self.project = project
         self._kept: dict[str, tuple[tuple[object, ...], KnownTrack]] = {}
+        self._moment: Moment | None = None
+        self._read: dict[str, Track] = {}
 
     def last(self, track_id: str) -> KnownTrack | None:
         """What was read of a track last."""
@@ -41,6 +44,15 @@ class Reading:
 
     def track(self, track: Track) -> KnownTrack:
         """The track as far as it is solved."""
+        now = Moment.of(self.project.session)
+        if now != self._moment:
+            self._moment, self._read = now, {}
+        if self._read.get(track.id) is not track:
+            self._kept[track.id] = self._found(track)
+            self._read[track.id] = track
+        return self._kept[track.id][1]
+
+    def _found(self, track: Track) -> tuple[tuple[object, ...], KnownTrack]:
         spans = self.project.session.stages.spans(track.id)
         found = [self.project.result(stage) for stage in spans]
         signature = (
@@ -50,7 +62,7 @@ class Reading:
         )
         kept = self._kept.get(track.id)
         if kept is not None and kept[0] == signature:
-            return kept[1]
+            return kept
         count = self.project.frame_count
         positions, confidence = np.full((count, 2), np.nan), np.zeros(count)
         state = np.full(count, "", dtype="<U8")
@@ -65,6 +77,4 @@ class Reading:
         for interval in track.occluded:
             hidden = state[interval.first : interval.last + 1]
             hidden[hidden == "visible"] = "occluded"
-        known = KnownTrack(positions, confidence, state, all(span is not None for span in found))
-        self._kept[track.id] = (signature, known)
-        return known
+        return signature, KnownTrack(positions, confidence, state, all(span is not None for span in found))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -169,6 +170,20 @@ def test_only_the_playhead_is_drawn_anew(lanes: LaneView) -> None:
     lanes.show_lanes(LANES[:2], 100)
     lanes.grab()
     assert lanes.still_paints == count + 1
+
+
+def test_a_lane_that_changes_is_drawn_alone(lanes: LaneView) -> None:
+    """The others stay as they are, and the picture is the same as if all were drawn anew."""
+    lanes.grab()
+    stills, alone = lanes.still_paints, lanes.lane_paints
+    first = LANES[1].rows[0]
+    changed = replace(LANES[1], rows=(replace(first, bars=(Bar(5, 60, "accent"),)), *LANES[1].rows[1:]))
+    lanes.show_lanes((LANES[0], changed, *LANES[2:]), 100)
+    image = lanes.grab().toImage()
+    assert (lanes.still_paints, lanes.lane_paints) == (stills, alone + 1)
+    lanes.refresh()
+    assert lanes.grab().toImage() == image
+    assert lanes.still_paints == stills + 1
 
 
 def test_equal_lanes_cost_nothing(lanes: LaneView) -> None:

@@ -2,36 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
+from functools import lru_cache
 
+import numpy as np
+from numpy.typing import ArrayLike
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QBrush, QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
 
 from app.window import fonts
 
 UNDERLAY = QColor(0, 0, 0, 190)
 PLATE = QColor(0, 0, 0, 205)
+_THICK, _WHITE = QPen(UNDERLAY, 3.6), QPen(QColor(255, 255, 255, 235), 1.8)
 
 
 def stroke(
     painter: QPainter, path: QPainterPath | QPolygonF, colour: QColor, width: float = 1.8, dash: bool = False
 ) -> None:
     """Draw a line with its underlay."""
-    pen = QPen(UNDERLAY, width + 1.8)
-    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
-    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
-    top = QPen(pen)
-    top.setColor(colour)
-    top.setWidthF(width)
-    if dash:
-        top.setDashPattern([3.0, 2.5])
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    for each in (pen, top):
-        painter.setPen(each)
+    for pen in _pens(colour.rgba(), width, dash):
+        painter.setPen(pen)
         if isinstance(path, QPolygonF):
             painter.drawPolyline(path)
         else:
             painter.drawPath(path)
+
+
+@lru_cache(maxsize=128)
+def _pens(colour: int, width: float, dash: bool) -> tuple[QPen, QPen]:
+    """The pens of the underlay and of a line in a colour (ARGB)."""
+    pen = QPen(UNDERLAY, width + 1.8)
+    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    top = QPen(pen)
+    top.setColor(QColor.fromRgba(colour))
+    top.setWidthF(width)
+    if dash:
+        top.setDashPattern([3.0, 2.5])
+    return pen, top
 
 
 def ring(
@@ -46,10 +56,10 @@ def ring(
 ) -> None:
     """A round handle: a ring, or a filled disc."""
     centre = QPointF(x, y)
-    painter.setPen(QPen(UNDERLAY, 3.6))
-    painter.setBrush(QBrush(colour) if filled else Qt.BrushStyle.NoBrush)
+    painter.setPen(_THICK)
+    painter.setBrush(colour if filled else Qt.BrushStyle.NoBrush)
     painter.drawEllipse(centre, radius, radius)
-    painter.setPen(QPen(QColor(255, 255, 255, 235) if filled else colour, 1.8))
+    painter.setPen(_WHITE if filled else QPen(colour, 1.8))
     painter.drawEllipse(centre, radius, radius)
     if dot and not filled:
         painter.setPen(Qt.PenStyle.NoPen)
@@ -59,12 +69,13 @@ def ring(
 
 def cross(painter: QPainter, x: float, y: float, colour: QColor, radius: float = 5.0) -> None:
     """A cross, for what is hidden or refused."""
-    for pen in (QPen(UNDERLAY, 3.6), QPen(colour, 1.6)):
+    for pen in (_THICK, QPen(colour, 1.6)):
         painter.setPen(pen)
         painter.drawLine(QPointF(x - radius, y - radius), QPointF(x + radius, y + radius))
         painter.drawLine(QPointF(x - radius, y + radius), QPointF(x + radius, y - radius))
 
 
+@lru_cache(maxsize=512)
 def plate_size(text: str, size: int = fonts.CAPTION) -> tuple[float, float]:
     """Width and height of a plate with a text."""
     metrics = QFontMetricsF(fonts.font(size, QFont.Weight.Medium))
@@ -88,6 +99,7 @@ def plate(
     return box
 
 
-def polygon(points: Sequence[Sequence[float]]) -> QPolygonF:
+def polygon(points: ArrayLike) -> QPolygonF:
     """A Qt polygon of widget places (n, 2)."""
-    return QPolygonF([QPointF(float(x), float(y)) for x, y in points])
+    rows: Iterable[tuple[float, float]] = np.asarray(points, np.float64).tolist()
+    return QPolygonF([QPointF(x, y) for x, y in rows])

@@ -79,9 +79,9 @@ class TrackLayer:
         colour = theme.DARK.colour(track.colour)
         reach = 2 if track.selected else 1
         first, last = max(self.frame - PAST * reach, 0), min(self.frame + FUTURE * reach, len(track.positions) - 1)
-        for begin, end, dash in ((first, self.frame, False), (self.frame, last, True)):
-            line = path_through(view.to_widget(track.positions[begin : end + 1]))
-            marks.stroke(painter, line, colour, 2.2 if track.selected else 1.6, dash)
+        placed, now = view.to_widget(track.positions[first : last + 1]), self.frame - first
+        for part, dash in ((placed[: now + 1], False), (placed[now:], True)):
+            marks.stroke(painter, path_through(part), colour, 2.2 if track.selected else 1.6, dash)
 
     def _point(self, painter: QPainter, view: View, track: TrackMark) -> None:
         place = track.at(self.frame)

@@ -6,6 +6,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.actions.checking import Check, Problem, check_motion
 from app.window.background_call import BackgroundCalls
+from app.window.moment import Moment
 from app.window.project import Project
 
 
@@ -27,6 +28,8 @@ class Checks(QObject):
         self._key = self._wanted = ""
         self._closed = False
         self._asked = ""
+        self._seen: tuple[Moment, str] | None = None
+        self._now = ""
 
     @property
     def measuring(self) -> bool:
@@ -39,12 +42,15 @@ class Checks(QObject):
         if not project.character_id:
             self.check = None
             return
-        stages = project.session.stages
-        stage = stages.animation(project.character_id)
-        key = stage.key + self._met()
+        stage = project.session.stages.animation(project.character_id)
+        if not self._wanted.startswith(stage.key):
+            self._wanted = ""
+        if project.progress or project.state(stage) != "fresh":
+            return
+        key = self._key_now()
         if key != self._wanted:
             self._wanted = ""
-        if key in (self._key, self._wanted) or project.progress or project.state(stage) != "fresh":
+        if key in (self._key, self._wanted):
             return
         self._wanted = key
         session, character = project.session, project.character_id
@@ -73,14 +79,22 @@ class Checks(QObject):
     def fresh(self) -> bool:
         """Whether what was measured is the motion wanted now."""
         project = self.project
-        if not project.character_id:
-            return False
-        return project.session.stages.animation(project.character_id).key + self._met() == self._key
+        # Whether the background is known is asked last: naming the stages of its depth takes longer than all the rest.
+        return (
+            bool(project.character_id)
+            and self._key.startswith(project.session.stages.animation(project.character_id).key)
+            and self._key_now() == self._key
+        )
 
-    def _met(self) -> str:
-        """Marks a check that knows where the character meets the measured background."""
-        stage = self.project.session.stages.penetration(self.project.character_id)
-        return " met" if stage in self.project.session.cache else ""
+    def _key_now(self) -> str:
+        """The key of the motion, marked where a check knows where the character meets the measured background."""
+        project = self.project
+        now = (Moment.of(project.session), project.character_id)
+        if now != self._seen:
+            stages = project.session.stages
+            met = " met" if stages.penetration(project.character_id) in project.session.cache else ""
+            self._seen, self._now = now, stages.animation(project.character_id).key + met
+        return self._now
 
     def meet_background(self) -> None:
         """Compute where the character meets the measured background, where there is one."""

@@ -9,7 +9,7 @@ from PySide6.QtGui import QFont, QFontMetricsF, QMouseEvent, QPainter, QPaintEve
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.window import fonts, theme
-from app.window.controls import Fold, Row, label
+from app.window.controls import Figure, Fold, Row
 
 SHOWN, ROW = 5, 22
 
@@ -77,7 +77,7 @@ class FrameSection(Fold):
 
     def __init__(self) -> None:
         super().__init__("This frame")
-        self.fit, self.stretch = label("", "value"), label("", "value")
+        self.fit, self.stretch = Figure(), Figure()
         self.column.addWidget(Row("Reprojection", self.fit))
         self.column.addWidget(Row("Edge stretch", self.stretch))
         self.bars = ResidualBars()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,13 @@ def vertex_title(project: Project, character: Character, vertex: int) -> str:
         if paired == vertex:
             return project.document.track(track_id).name
     return f"vertex {vertex:,}"
+
+
+def vertex_titles(project: Project, character: Character, vertices: Iterable[int]) -> dict[int, str]:
+    """What some vertices are called, each looked up once."""
+    names = {track.id: track.name for track in project.document.tracks}
+    paired = {vertex: names.get(track_id) for track_id, vertex in character.pairs.items()}
+    return {vertex: paired.get(vertex) or f"vertex {vertex:,}" for vertex in vertices}
 
 
 def kind_of(character: Character, frame: int, vertex: int, track: Track | None) -> str:
@@ -57,7 +64,8 @@ def handles(
     away : vertex -> pixels from its point; over the limit it is marked. metric : whether the world is in metres.
     """
     frame = project.frame
-    tracks = {vertex: project.document.track(track_id) for track_id, vertex in character.pairs.items()}
+    named = {track.id: track for track in project.document.tracks}
+    tracks = {vertex: named[track_id] for track_id, vertex in character.pairs.items()}
     made = []
     wanted = set(tracks) | control_vertices(character) | ({project.vertex} if project.vertex >= 0 else set())
     look = theme.active().tracks
@@ -69,7 +77,7 @@ def handles(
         old = before[vertex] if before is not None and selected else None
         if old is None and unedited is not None and kind.startswith("edited"):
             old = unedited[vertex]
-        title = vertex_title(project, character, vertex)
+        title = track.name if track is not None else f"vertex {vertex:,}"
         if old is not None:
             moved = float(np.linalg.norm(vertices[vertex] - old))
             title += f"  {100 * moved:+.1f} cm" if metric else f"  {moved:+.2g} units"

@@ -9,7 +9,7 @@ from PySide6.QtCore import Signal
 from app.model.character import Character
 from app.model.edits import characters
 from app.window.character.frame_section import FrameSection
-from app.window.character.handles_of import vertex_title
+from app.window.character.handles_of import vertex_titles
 from app.window.character.move_section import MoveSection
 from app.window.character.name_chooser import NameChooser
 from app.window.character.pair_section import PairSection
@@ -75,8 +75,7 @@ class CharacterInspector(ScrollColumn):
         """Show how well the pose in sight fits: pixels by vertex, and the least and largest stretch."""
         project, character = self.project, self.character
         if project is not None and character is not None:
-            names = {vertex: vertex_title(project, character, vertex) for vertex in away}
-            self.fit.show_fit(away, names, limit, stretch)
+            self.fit.show_fit(away, vertex_titles(project, character, away), limit, stretch)
 
     def _choose(self, index: int) -> None:
         if self.project is not None:

@@ -317,7 +317,7 @@ class MeshView(Panel):
         for pane in self.panes.own:
             if heat is None or len(heat.colours) == len(pane.view.vertices):
                 pane.view.paint(None if heat is None else heat.colours)
-            pane.view.surface.update()
+            pane.view.repaint_over()
 
     def highlight(self, vertex: int) -> None:
         """Light a vertex that is pointed at elsewhere, -1 for none."""
@@ -354,7 +354,7 @@ class MeshView(Panel):
 
     def _over(self) -> None:
         for pane in self.panes.own:
-            pane.view.surface.update()
+            pane.view.repaint_over()
 
     def changeEvent(self, event: QEvent) -> None:
         """Paint the overlays in another look."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -57,7 +58,8 @@ class Motion:
         self.unedited = solved.vertices if solved is not None else None
         found = None if self.taken else project.result(stage)
         if found is not None:
-            self.last, self.streamed, self.held, self.taken = found.vertices, {}, {}, True
+            # A plain view: what indexes a mapped file as such makes an object of it each time.
+            self.last, self.streamed, self.held, self.taken = np.asarray(found.vertices), {}, {}, True
             self._meant, self._placed_last = {}, self.placed
 
     def take(self, stage: Stage, value: Any) -> int | None:
@@ -89,6 +91,21 @@ class Motion:
             placed: Array = self.placed.vertices
             return placed
         return self.unedited[frame] if self.unedited is not None and frame < len(self.unedited) else None
+
+    def ways(self, first: int, last: int, chosen: Sequence[int]) -> Array:
+        """Places (last - first + 1, k, 3) of chosen vertices in frames first to last, NaN where they are not known."""
+        made = np.full((last - first + 1, len(chosen), 3), np.nan)
+        farthest, alike = max(chosen, default=-1), 0
+        if self.last is not None and farthest < self.last.shape[1]:
+            found = self.last[first : last + 1, chosen]
+            alike = len(found)
+            made[:alike] = found
+        for frame in range(first, last + 1):
+            if frame == 0 or frame - first >= alike or frame in self.held or frame in self.streamed:
+                pose = self.vertices(frame)
+                known = pose is not None and farthest < len(pose)
+                made[frame - first] = pose[chosen] if known and pose is not None else np.nan
+        return made
 
     # what a hand holds -------------------------------------------------------------------------------------------
 

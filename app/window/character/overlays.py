@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen, QPolygonF
 
 from app.actions.heat import Heat
 from app.window import fonts, theme
@@ -18,6 +20,8 @@ from app.window.viewport.lens import Lens
 from imitation.geometry import Camera
 
 Array = NDArray[np.float64]
+Way = list[list[float]]
+"""Widget places [x, y], NaN where unknown."""
 NARROW = 420
 """Pixels of width below which a view has no room for legends."""
 
@@ -37,32 +41,45 @@ class Trail:
 
 def paint_trails(painter: QPainter, lens: Lens, trails: Sequence[Trail]) -> None:
     """Draw the ways of points in space: thin, the coming part dashed."""
-    for trail in trails:
-        seen = lens.to_widget(trail.places)
+    for trail, seen in zip(trails, _placed(trails, lens.to_widget), strict=True):
         _way(painter, seen[: trail.now + 1], trail.colour, dash=False)
         _way(painter, seen[trail.now :], trail.colour, dash=True)
 
 
 def paint_points(painter: QPainter, trails: Sequence[Trail], scale: float, x: float, y: float) -> None:
     """Draw tracked points over the film: their ways in picture pixels, placed by the view, and a cross for now."""
-    for trail in trails:
-        seen = (trail.places + 0.5) * scale + (x, y)
+    for trail, seen in zip(trails, _placed(trails, lambda places: (places + 0.5) * scale + (x, y)), strict=True):
         _way(painter, seen[: trail.now + 1], trail.colour, dash=False)
-        if np.isfinite(seen[trail.now]).all():
-            marks.cross(painter, float(seen[trail.now, 0]), float(seen[trail.now, 1]), QColor(trail.colour), 4.5)
+        px, py = seen[trail.now]
+        if math.isfinite(px + py):
+            marks.cross(painter, px, py, QColor(trail.colour), 4.5)
 
 
-def _way(painter: QPainter, seen: Array, colour: str, *, dash: bool) -> None:
-    good = seen[np.isfinite(seen).all(1)]
-    if len(good) > 1:
-        faint = QColor(colour)
-        faint.setAlpha(170)
-        pen = QPen(faint, 1.4)
-        if dash:
-            pen.setDashPattern([2.0, 3.0])
-        painter.setPen(pen)
+def _placed(trails: Sequence[Trail], to_widget: Callable[[Array], Array]) -> list[Way]:
+    """Where the places of all trails are seen: one product for all of them costs as much as for one."""
+    if not trails:
+        return []
+    seen = to_widget(np.concatenate([trail.places for trail in trails])).tolist()
+    ends = np.cumsum([len(trail.places) for trail in trails]).tolist()
+    return [seen[begin:end] for begin, end in zip((0, *ends), ends, strict=False)]
+
+
+def _way(painter: QPainter, seen: Way, colour: str, *, dash: bool) -> None:
+    line = QPolygonF([QPointF(x, y) for x, y in seen if x == x and y == y])
+    if line.size() > 1:
+        painter.setPen(_pen(colour, dash))
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawPolyline(marks.polygon(good.tolist()))
+        painter.drawPolyline(line)
+
+
+@lru_cache(maxsize=64)
+def _pen(colour: str, dash: bool) -> QPen:
+    faint = QColor(colour)
+    faint.setAlpha(170)
+    pen = QPen(faint, 1.4)
+    if dash:
+        pen.setDashPattern([2.0, 3.0])
+    return pen
 
 
 def paint_camera(painter: QPainter, lens: Lens, camera: Camera, size: tuple[int, int], length: float) -> None:

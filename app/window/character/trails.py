@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from app.model.character import Character
 from app.window.character.motion import Motion
 from app.window.character.overlays import Trail
@@ -22,13 +20,7 @@ def trails(project: Project, character: Character, motion: Motion, frame: int) -
     first, last = max(frame - REACH, 0), min(frame + REACH, max(project.frame_count - 1, 0))
     tracks = {track.id: track for track in project.document.tracks}
     pairs = [(tracks[name], vertex) for name, vertex in character.pairs.items() if name in tracks]
-    rows = []
-    for at in range(first, last + 1):
-        pose = motion.vertices(at)
-        known = pose is not None and all(vertex < len(pose) for _, vertex in pairs)
-        rows.append(pose[[vertex for _, vertex in pairs]] if known and pose is not None else None)
-    blank = np.full((len(pairs), 3), np.nan)
-    ways = np.stack([blank if row is None else row for row in rows]) if rows else np.zeros((0, len(pairs), 3))
+    ways = motion.ways(first, last, [vertex for _, vertex in pairs])
     return [Trail(colour_of(track), ways[:, number], frame - first) for number, (track, _) in enumerate(pairs)]
 
 

@@ -28,6 +28,7 @@ class VertexSection(QWidget):
         super().__init__()
         self.project: Project | None = None
         self.character: Character | None = None
+        self._names: tuple[tuple[str, str], ...] = ()
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(8)
@@ -92,10 +93,12 @@ class VertexSection(QWidget):
 
     def _show_followed(self, project: Project, followed: str) -> None:
         self.follows.blockSignals(True)
-        self.follows.clear()
-        self.follows.addItem("none", "")
-        for track in project.document.tracks:
-            self.follows.addItem(track.name, track.id)
+        names = (("none", ""), *((track.name, track.id) for track in project.document.tracks))
+        if names != self._names:
+            self._names = names
+            self.follows.clear()
+            for name, track_id in names:
+                self.follows.addItem(name, track_id)
         self.follows.setCurrentIndex(max(self.follows.findData(followed), 0))
         self.follows.blockSignals(False)
 

@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from app.actions.checking import Check, Problem
-from app.window import icons
+from app.window import icons, theme
 from app.window.controls import button, icon_button, label, separator
 
 
@@ -24,6 +24,7 @@ class WarningLine(QWidget):
         row = QHBoxLayout()
         row.setSpacing(8)
         self.icon = QLabel()
+        self._picture: tuple[str, str, str] = ("", "", "")
         self.text = label("", "label")
         self.text.setWordWrap(True)
         row.addWidget(self.icon, 0, Qt.AlignmentFlag.AlignTop)
@@ -59,7 +60,10 @@ class WarningLine(QWidget):
             text = "No problem was found"
         else:
             text, token, name = ("Looking for problems…" if measuring else "Not checked yet"), "text3", "note"
-        self.icon.setPixmap(icons.pixmap(name, token, 18))
+        picture = (name, token, theme.active().name)
+        if picture != self._picture:
+            self._picture = picture
+            self.icon.setPixmap(icons.pixmap(name, token, 18))
         self.text.setText(text)
         self.show_button.setEnabled(shown is not None)
         place = problems.index(shown) + 1 if shown is not None else 0

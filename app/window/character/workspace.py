@@ -157,15 +157,19 @@ class CharacterWorkspace(Workspace):
         """Show a frame: its picture, the pose, its marks."""
         if self.posing is not None and frame != self.frame:
             self.posing.leave()
-        self.frame, self.picture = frame, picture
+        before, self.frame, self.picture = self.frame, frame, picture
         self.tracks.show_picture(frame, picture)
-        self.refresh()
+        self._show()
+        character = self.character
+        if character is not None and not character.edits.keys().isdisjoint((before, frame)):
+            self.lanes_changed.emit()  # an edit of the frame in sight is drawn otherwise; nothing else hangs on it
 
     def document_changed(self, before: Document, after: Document) -> None:
-        """Show the document as it is."""
+        """Take the document as it is; the window has everything shown once what changes it is through."""
         if self.placing is not None:
             self.placing.follow(before, after)
-        self.refresh()
+        if self.project is not None:
+            self.motion.read(self.project)
 
     def command(self, name: str) -> bool:
         """Do a command of this workspace; says whether it was one."""
@@ -194,11 +198,18 @@ class CharacterWorkspace(Workspace):
         return self.motion.vertices(self.frame)
 
     def refresh(self) -> None:
-        """Show the project as it is; nothing in 3D is loaded while the workspace is hidden."""
+        """Show the project as it is; while the workspace is hidden nothing is loaded and nothing is drawn."""
+        self._show()
+        if self.isVisible():
+            self.lanes_changed.emit()
+
+    def _show(self) -> None:
         project = self.project
         if project is None:
             return
         self.motion.read(project)
+        if not self.isVisible():
+            return
         self.tracks.refresh()
         character = self.character
         vertices = self.pose() if character is not None else None
@@ -209,10 +220,8 @@ class CharacterWorkspace(Workspace):
         mode = self.placing.mode if self.placing is not None else None
         copied = self.posing is not None and self.posing.copy is not None
         self.inspector.show_character(project, place, mode=mode or "", copied=copied)
-        if self.isVisible():
-            self._show_mesh(character, vertices)
-            self._show_checks(character)
-        self.lanes_changed.emit()
+        self._show_mesh(character, vertices)
+        self._show_checks(character)
 
     def show_pose(self) -> None:
         """Show the pose of the frame and its handles, nothing else: it follows the mouse."""

@@ -3,6 +3,7 @@
 from app.window.controls.buttons import button, icon_button, renew_tooltips, set_tooltip, toggle, tool
 from app.window.controls.chooser import Chooser
 from app.window.controls.error_bar import ErrorBar
+from app.window.controls.figure import Figure
 from app.window.controls.fold import Fold
 from app.window.controls.invitation import Invitation
 from app.window.controls.labels import Chip, Elided, Header, Pictogram, Row, label, separator
@@ -15,6 +16,7 @@ __all__ = [
     "Chooser",
     "Elided",
     "ErrorBar",
+    "Figure",
     "Fold",
     "Header",
     "Invitation",

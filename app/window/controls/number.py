@@ -94,7 +94,9 @@ class NumberField(QLineEdit):
         self._show()
 
     def _show(self) -> None:
-        self.setText(self.limits.text(self._value))
+        text = self.limits.text(self._value)
+        if text != self.text():
+            self.setText(text)
         self.setCursorPosition(0)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QBrush, QFontMetricsF, QPainter, QPaintEvent
+from PySide6.QtGui import QBrush, QFont, QFontMetricsF, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
 from app.window import fonts, icons, theme
-from app.window.controls import icon_button, label
+from app.window.controls import Figure, icon_button
 from app.window.timeline.lanes import Diamond
 from app.window.timeline.paint import paint_diamond
 
@@ -27,8 +27,9 @@ class Legend(QWidget):
 
     def show_entries(self, entries: Sequence[Entry]) -> None:
         """Show other entries; those that do not fit are left out from the left."""
-        self.entries = tuple(entries)
-        self.update()
+        if tuple(entries) != self.entries:
+            self.entries = tuple(entries)
+            self.update()
 
     def sizeHint(self) -> QSize:
         """As wide as there is room."""
@@ -88,10 +89,9 @@ class Transport(QWidget):
             self.buttons[name] = button
             row.addWidget(button)
         row.addSpacing(10)
-        self.number = label("0", "title")
+        self.number = Figure("text", fonts.BODY, QFont.Weight.DemiBold, align=Qt.AlignmentFlag.AlignRight)
         self.number.setMinimumWidth(26)
-        self.number.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        self.of = label("", "caption")
+        self.of = Figure("text3")
         row.addWidget(self.number)
         row.addWidget(self.of)
         row.addSpacing(12)
@@ -102,8 +102,11 @@ class Transport(QWidget):
 
     def show_frame(self, frame: int, count: int, fps: float, seconds: float) -> None:
         """Show where we are."""
+        last = max(count - 1, 0)
+        self.number.reserve(str(last))
+        self.of.reserve(f"of {last}   ·   {last / max(fps, 1e-9):.2f} s   ·   {fps:g} fps")
         self.number.setText(str(frame))
-        self.of.setText(f"of {max(count - 1, 0)}   ·   {seconds:.2f} s   ·   {fps:g} fps")
+        self.of.setText(f"of {last}   ·   {seconds:.2f} s   ·   {fps:g} fps")
 
     def show_playing(self, playing: bool) -> None:
         """Show whether it plays."""

@@ -43,10 +43,12 @@ class LaneView(QWidget):
         self.compact = False
         self._scrolled: dict[str, int] = {}
         self._still: QPixmap | None = None
+        self._outdated: set[int] = set()
         self._seeking = False
         self._drag: LaneDrag | None = None
         self.preview: LaneEdit | None = None
         self.still_paints = 0
+        self.lane_paints = 0
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
@@ -57,7 +59,9 @@ class LaneView(QWidget):
         if lanes == self.lanes and count == self.axis.count:
             return
         self.lanes = lanes
-        self.axis = self.axis.sized(self.width(), count)
+        axis, self.axis = self.axis, self.axis.sized(self.width(), count)
+        if axis != self.axis:
+            self._still = None
         self._place()
 
     def show_compact(self, on: bool) -> None:
@@ -67,11 +71,21 @@ class LaneView(QWidget):
             self._place()
 
     def _place(self) -> None:
+        before = self.placed
         self.placed = layout(summaries(self.lanes)) if self.compact else layout(self.lanes, self._scrolled)
+        if self._still is not None and _alike(before, self.placed):
+            self._renew({number for number, each in enumerate(self.placed) if each != before[number]})
+            return
         if total_height(self.placed) != self.minimumHeight():
             self.setMinimumHeight(total_height(self.placed))
             self.updateGeometry()
         self.refresh()
+
+    def _renew(self, numbers: set[int]) -> None:
+        """Draw some lanes anew: while motion is solved one of them changes many times a second."""
+        self._outdated |= numbers
+        for number in numbers:
+            self.update(0, self.placed[number].top, self.width(), self.placed[number].height)
 
     def show_frame(self, frame: int) -> None:
         """Move the playhead; the lanes are not drawn again unless they have to scroll."""
@@ -92,6 +106,7 @@ class LaneView(QWidget):
     def refresh(self) -> None:
         """Draw the lanes anew at the next paint."""
         self._still = None
+        self._outdated.clear()
         self.update()
 
     def _set_axis(self, axis: Axis) -> None:
@@ -213,17 +228,23 @@ class LaneView(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         """Draw the kept picture of the lanes and the playhead over it."""
         ratio = self.devicePixelRatioF()
+        if ratio % 1 and self._outdated:
+            self._still = None  # where lanes end between pixels, one alone would leave seams
         if self._still is None or self._still.size() != self.size() * ratio:
             self._still = QPixmap(self.size() * ratio)
             self._still.setDevicePixelRatio(ratio)
-            self._still.fill(theme.active().colour("panel"))
             painter = QPainter(self._still)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            paint.paint_lanes(painter, self.axis, self.placed, self.thumbnail)
-            paint.paint_ruler(painter, self.axis)
-            self._paint_range(painter)
+            self._paint_still(painter, self.placed, ruler=True)
             painter.end()
             self.still_paints += 1
+        elif self._outdated:
+            painter = QPainter(self._still)
+            for each in (self.placed[number] for number in sorted(self._outdated)):
+                painter.setClipRect(0, each.top, self.width(), each.height)
+                self._paint_still(painter, (each,))
+                self.lane_paints += 1
+            painter.end()
+        self._outdated.clear()
         painter = QPainter(self)
         painter.drawPixmap(0, 0, self._still)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -232,6 +253,14 @@ class LaneView(QWidget):
         if self.axis.count > 1:
             paint.paint_playhead(painter, self.axis, self.frame, min(total_height(self.placed), self.height()))
         painter.end()
+
+    def _paint_still(self, painter: QPainter, placed: Sequence[Placed], *, ruler: bool = False) -> None:
+        painter.fillRect(self.rect(), theme.active().colour("panel"))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        paint.paint_lanes(painter, self.axis, placed, self.thumbnail)
+        if ruler:
+            paint.paint_ruler(painter, self.axis)
+        self._paint_range(painter)
 
     def _paint_range(self, painter: QPainter) -> None:
         if self.axis.count > 1:
@@ -242,3 +271,10 @@ class LaneView(QWidget):
         first, last = self.axis.x(self.range[0]), self.axis.x(self.range[1])
         painter.fillRect(LABELS, RULER, max(int(first) - LABELS, 0), self.height(), shade)
         painter.fillRect(int(last), RULER, max(self.width() - int(last), 0), self.height(), shade)
+
+
+def _alike(before: Sequence[Placed], after: Sequence[Placed]) -> bool:
+    """Whether the same lanes stand in the same places."""
+    return [(each.lane.id, each.top, each.height) for each in before] == [
+        (each.lane.id, each.top, each.height) for each in after
+    ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -41,11 +42,13 @@ class Handle:
 
 def paint_handles(painter: QPainter, lens: Lens, handles: Sequence[Handle], pointed: Sequence[int] = ()) -> None:
     """Draw the handles, the selected one last with its axes and its name; those pointed at are named and lit."""
-    for handle in sorted(handles, key=lambda each: (each.selected, each.kind.startswith("edited"))):
-        place = lens.to_widget(np.array(handle.place))
-        if not np.isfinite(place).all():
+    if not handles:
+        return
+    order = sorted(handles, key=lambda each: (each.selected, each.kind.startswith("edited")))
+    places = lens.to_widget(np.array([handle.place for handle in order])).tolist()
+    for handle, (x, y) in zip(order, places, strict=True):
+        if not math.isfinite(x + y):
             continue
-        x, y = float(place[0]), float(place[1])
         _link(painter, lens, handle, x, y)
         if handle.vertex in pointed:
             painter.setPen(QPen(QColor(255, 255, 255, 200), 1.6))

@@ -117,7 +117,7 @@ class Mouse:
             part = view.gizmo.part_at(view.lens().camera, place)
             if part != self.part:
                 self.part = part
-                view.surface.update()
+                view.repaint_over()
         elif view.handles:
             self.hover_over(self.handle_at(place))
 
@@ -126,7 +126,7 @@ class Mouse:
         if vertex != self.hover:
             self.hover = vertex
             self.view.hovered.emit(vertex)
-            self.view.surface.update()
+            self.view.repaint_over()
 
     def _move_view(self, position: QPointF) -> None:
         if self.turn is not None:

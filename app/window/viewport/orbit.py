@@ -43,10 +43,11 @@ class Orbit:
         """The camera for a widget of a size (w, h)."""
         width, height = size
         focal = height / (2 * math.tan(self.field / 2))
-        flat = math.cos(self.elevation)
-        back = np.array([flat * math.cos(self.azimuth), flat * math.sin(self.azimuth), math.sin(self.elevation)])
-        right = np.array([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0])
-        R = np.stack([right, np.cross(-back, right), -back])
+        flat, rise = math.cos(self.elevation), math.sin(self.elevation)
+        cosine, sine = math.cos(self.azimuth), math.sin(self.azimuth)
+        back = np.array([flat * cosine, flat * sine, rise])
+        # Right, down and forward; down is the cross product of the two others.
+        R = np.array([[-sine, cosine, 0.0], [rise * cosine, rise * sine, -flat], -back])
         centre = np.array(self.target) + self.distance * back
         return Camera([[focal, 0, width / 2], [0, focal, height / 2], [0, 0, 1]], R, -R @ centre)
 

@@ -26,6 +26,8 @@ from imitation.geometry import Camera
 
 Looking = Literal["orbit", "camera", "side"]
 IDLE = 250
+CORNERS = np.array([[corner >> axis & 1 for axis in range(3)] for corner in range(8)], bool)
+"""Of a box, by whether a corner lies at the far end of each axis."""
 
 
 class Surface(QWidget):
@@ -88,6 +90,9 @@ class Viewport(QWidget):
         self._idle.setInterval(IDLE)
         self._idle.timeout.connect(self._refine)
         self._dirty = True
+        self._lens: Lens | None = None
+        # The host fills it: nothing below need be painted, and what lies over it is painted with it, once.
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -125,18 +130,19 @@ class Viewport(QWidget):
     def show_handles(self, handles: Sequence[Handle]) -> None:
         """Show other handles."""
         self.handles = tuple(handles)
-        self.surface.update()
+        self.repaint_over()
 
     def show_gizmo(self, gizmo: Gizmo | None) -> None:
         """Show the gizmo, or none; one that is held stays where the hand has it."""
-        self.gizmo = gizmo
-        self.surface.update()
+        if gizmo != self.gizmo:
+            self.gizmo = gizmo
+            self.repaint_over()
 
     def highlight(self, vertex: int) -> None:
         """Show the handle of a vertex that is pointed at elsewhere, -1 for none."""
         if vertex != self.highlighted:
             self.highlighted = vertex
-            self.surface.update()
+            self.repaint_over()
 
     def show_camera(self, camera: Camera | None, picture: QImage | None) -> None:
         """Take the frame's camera and its picture."""
@@ -214,21 +220,22 @@ class Viewport(QWidget):
             camera = framed(self.camera, self.view)
         else:
             camera = self.orbit.camera(size)
-        return clipped(camera, size, np.concatenate([self.scene.seen_extent, self._corners()]))
-
-    def _corners(self) -> NDArray[np.float64]:
         low, high = self.scene.seen_extent
-        grid = np.stack(np.meshgrid(*zip(low, high, strict=True)), axis=-1).reshape(-1, 3)
-        return np.asarray(grid, np.float64)
+        return clipped(camera, size, np.where(CORNERS, high, low))
 
     def redraw(self) -> None:
         """Draw soon: however many changes come before the next paint, the scene is drawn once."""
         self._dirty = True
+        self.repaint_over()
+
+    def repaint_over(self) -> None:
+        """Paint soon what lies over the picture, which itself stays unless it has changed."""
         self.update()
-        self.surface.update()
+        if self.surface.internalWinId():
+            self.surface.update()  # over a host with a window of its own it has one too, and is painted by itself
 
     def _draw(self, *, fine: bool) -> None:
-        lens = self.lens()
+        lens = self._lens = self.lens()
         behind = self.picture if self.through_camera and self.shows("film") else None
         opacity = self.mesh_opacity if self.through_camera else 1.0
         self.host.background.show(behind, self.view, mesh_opacity=opacity)
@@ -251,8 +258,8 @@ class Viewport(QWidget):
             self.update()
 
     def paint_over(self, painter: QPainter) -> None:
-        """Draw handles and notes over the picture."""
-        lens = self.lens()
+        """Draw handles and notes over the picture, by the lens it was drawn by."""
+        lens = self.lens() if self._dirty or self._lens is None else self._lens
         if self.gizmo is not None:
             paint_gizmo(painter, lens, self.gizmo, getattr(self._drag, "part", self.mouse.part))
         else:
