@@ -80,6 +80,14 @@ def new(
     help="NAME OTHER LAG: two points on both sides of the body; where one is hidden it moves as the other does, LAG "
     "frames later (half a stride), or 'auto' to find that from the tracks.",
 )
+@click.option(
+    "--lift-feet",
+    "lifts",
+    nargs=2,
+    type=(str, click.Choice(["on", "off"])),
+    multiple=True,
+    help="CHARACTER on|off: lift its feet onto the ground where the motion puts them below.",
+)
 @click.option("--name", help="Name of the project.")
 @click.option("--copy", is_flag=True, help="Copy media into the project instead of linking them.")
 @click.pass_obj
@@ -102,6 +110,9 @@ def set_(console: Console, project: Path, **options: Any) -> None:
             marks.pair_named(session, character, name, vertex)
         for name, other, lag in options["mirrors"]:
             _mirror(session, name, other, lag)
+        for character, wanted in options["lifts"]:
+            one = marks.character_named(session.document, character)
+            session.apply(characters.set_solve(session.document, one.id, lift_feet=wanted == "on"))
         set_lengths(session, options)
         if options["name"]:
             session.apply(scene.rename(session.document, options["name"]))

@@ -78,6 +78,7 @@ class SolveChoice:
     symmetry : a hidden limb follows its mirror's motion.
     reach : frames that propagation may change; None is the whole clip.
     keep_volume : hold the volume of a closed mesh.
+    lift_feet : feet below the ground of their contacts are lifted onto it, after everything else.
     """
 
     method: SolveMethod = "joint"
@@ -85,6 +86,7 @@ class SolveChoice:
     symmetry: bool = False
     reach: Interval | None = None
     keep_volume: bool = False
+    lift_feet: bool = False
     unknown: Unknown = attrs.field(factory=FrozenMap, repr=False)
 
 

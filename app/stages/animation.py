@@ -66,7 +66,7 @@ def animation(document: Document, character: Character) -> Stage:
     """The character's motion with all edits."""
     edits = counting_edits(character)
     following = tuple((vertex, track) for vertex, track in character.following.items())
-    inputs = (
+    inputs: tuple[Any, ...] = (
         character.id,
         edits,
         following,
@@ -74,8 +74,14 @@ def animation(document: Document, character: Character) -> Stage:
         character.solve.reach,
         character.solve.keep_volume,
     )
+    needs: tuple[Stage, ...] = (base(document, character),)
+    if character.solve.lift_feet:
+        planted = tuple(
+            (track.id, character.pairs[track.id]) for track in _paired(document, character) if track.contacts
+        )
+        inputs += (planted,)
+        needs += (scene.world(document), *(scene.contacts(document, document.track(each)) for each, _ in planted))
     label = f"Propagating edits of {character.name}" if edits else f"Moving {character.name}"
-    needs = (base(document, character),)
     return Stage(f"animation/{character.id}", label, _animation, inputs, needs, weight=0.5 + len(edits))
 
 
@@ -217,10 +223,12 @@ def _intervals(placed: list[PlacedContact]) -> list[tuple[int, int, Any]]:
     return [(contact.first, contact.last, contact.place) for contact in placed]
 
 
-def _animation(context: Context, inputs: Any, solved: Any) -> Animation:
+def _animation(
+    context: Context, inputs: Any, solved: Any, world: World | None = None, *contacts: list[PlacedContact]
+) -> Animation:
     from imitation.propagation import propagate
 
-    character, edits, following, smooth, reach, keep_volume = inputs
+    character, edits, following, smooth, reach, keep_volume, *planted = inputs
     committed: dict[int, Mapping[int, Any]] = {
         frame: {vertex: np.array(place) for vertex, place in places} for frame, places, _ in edits
     }
@@ -242,7 +250,14 @@ def _animation(context: Context, inputs: Any, solved: Any) -> Animation:
         progress=context.progress,
     )
     memory[("imitation", character)] = result
-    return Animation(result.vertices, result.key_points, result.names, result.report.as_dict())
+    vertices, keys = result.vertices, result.key_points
+    if world is not None:
+        from imitation.motion import lifted_feet
+
+        feet = {vertex: _intervals(placed) for (_, vertex), placed in zip(planted[0], contacts, strict=True)}
+        vertices = lifted_feet(vertices, solved.rest, feet, world.normal)
+        keys = vertices[:, solved.keys.vertices]
+    return Animation(vertices, keys, result.names, result.report.as_dict())
 
 
 def _ambiguous(context: Context, inputs: tuple[()], solved: Any) -> Any:

@@ -3,6 +3,7 @@
 from imitation.motion.alignment import Similarity, align_character
 from imitation.motion.anchors import anchor_depths
 from imitation.motion.contacts import Contact
+from imitation.motion.footing import lifted_feet
 from imitation.motion.keys import KeyTracks, key_tracks
 from imitation.motion.lifting import Lift, LiftSettings, lift_tracks
 from imitation.motion.polishing import pixel_noise, polish
@@ -21,6 +22,7 @@ __all__ = [
     "anchor_depths",
     "key_tracks",
     "lift_tracks",
+    "lifted_feet",
     "mirror_motion",
     "pixel_noise",
     "polish",

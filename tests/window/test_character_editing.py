@@ -214,6 +214,19 @@ def test_escape_during_propagation_keeps_what_is_finished(posed: Shell, monkeypa
     assert posed.character.mesh.notes.right[0] == "up to date"
 
 
+def test_feet_are_lifted_by_a_check_box(posed: Shell) -> None:
+    """Ticked it is one entry of the history and the motion is solved so; undo takes the tick away."""
+    box = posed.character.inspector.moves.lift
+    assert not box.isChecked()
+    QTest.mouseClick(box, LEFT, pos=at(10, box.height() // 2))
+    assert character(posed).solve.lift_feet
+    quiet(posed)
+    assert box.isChecked()
+    QTest.keyClick(posed, Qt.Key.Key_Z, CONTROL)
+    assert not character(posed).solve.lift_feet
+    wait_for(lambda: not box.isChecked(), 30)
+
+
 def test_several_vertices_first_then_ctrl_return(posed: Shell) -> None:
     """Without propagation two vertices are moved in two frames; undo shows the frame as it was committed before."""
     QTest.mouseClick(posed.character.inspector.automatic, LEFT, pos=at(10, 8))

@@ -94,9 +94,9 @@ def set_alignment(document: Document, character_id: str, **changes: Any) -> Edit
 
 
 def set_solve(document: Document, character_id: str, **changes: Any) -> Edit:
-    """Change how the motion is solved: method, smooth, symmetry, keep_volume, reach (first, last) or None."""
+    """Change how the motion is solved: method, smooth, symmetry, keep_volume, lift_feet, reach or None."""
     character = document.character(character_id)
-    known = {"method", "smooth", "symmetry", "keep_volume", "reach"}
+    known = {"method", "smooth", "symmetry", "keep_volume", "lift_feet", "reach"}
     if not changes or not set(changes) <= known:
         raise ModelError(f"A solve has {', '.join(sorted(known))}, not {', '.join(sorted(set(changes) - known))}.")
     if changes.get("method", "joint") not in ("joint", "paper"):

@@ -6,7 +6,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout
 
 from app.model.character import Character
-from app.model.edits import poses
+from app.model.edits import characters, poses
 from app.window.character.handles_of import vertex_title
 from app.window.character.row_list import Act, Entry, RowList
 from app.window.controls import Fold, button, icon_button, label
@@ -51,6 +51,10 @@ class MoveSection(Fold):
         line.addWidget(self.forget, 1)
         self.column.addWidget(self.automatic)
         self.column.addLayout(line)
+        self.lift = QCheckBox("Lift feet onto the ground")
+        self.lift.setToolTip("Where the motion puts a foot below the ground of its contacts, it is lifted, softly")
+        self.lift.clicked.connect(self._lift)
+        self.column.addWidget(self.lift)
         bar = QHBoxLayout()
         bar.setSpacing(2)
         self.title = label("No frame is edited yet", "label")
@@ -87,6 +91,7 @@ class MoveSection(Fold):
         self.title.setText(f"{count} edited frame{'s' if count != 1 else ''}" if count else "No frame is edited yet")
         self.caption.setText("")
         self.forget.setEnabled(project.frame in edits)
+        self.lift.setChecked(character.solve.lift_feet)
         self.copy_button.setEnabled(project.frame in edits)
         self.paste_button.setEnabled(copied)
 
@@ -106,6 +111,10 @@ class MoveSection(Fold):
             self.unmove.emit(frame, vertex)
         else:
             self.mute.emit(frame, vertex, not self.character.edits[frame].moves[vertex].muted)
+
+    def _lift(self, on: bool) -> None:
+        if self.project is not None and self.character is not None:
+            self.project.edit(characters.set_solve, self.character.id, lift_feet=on)
 
     def _reset(self) -> None:
         if self.project is not None and self.character is not None:

@@ -11,6 +11,7 @@ import pytest
 
 from app.actions import posing
 from app.actions.session import Session
+from app.model.edits import characters
 from app.stages.results import Animation
 from imitation import InputError
 
@@ -57,6 +58,25 @@ def test_a_moved_vertex_is_where_it_was_put_and_undo_takes_it_back(session: Sess
     assert np.array_equal(after[0], before[0])
     session.undo()
     assert session.runner.state(session.stages.animation(character)) == "fresh"
+    assert np.array_equal(animated(session), before)
+
+
+def test_feet_are_lifted_onto_their_contacts_and_undo_lets_them_sink(session: Session) -> None:
+    """No foot is below its contacts; what is lifted goes straight up; without it the old bits are there at once."""
+    character = session.document.characters[0]
+    before = animated(session)
+    session.apply(characters.set_solve(session.document, character.id, lift_feet=True))
+    after, world = animated(session), session.result(session.stages.world)
+    up = world.normal  # type: ignore[attr-defined]
+    change = after - before
+    assert np.abs(change - (change @ up)[..., None] * up).max() < 1e-12
+    assert (change @ up).min() >= 0
+    for track in session.document.tracks:
+        for contact in session.result(session.stages.contacts(track.id)) or () if track.contacts else ():  # type: ignore[attr-defined]
+            foot = after[contact.first : contact.last + 1, character.pairs[track.id]]
+            assert (foot @ up).min() > float(contact.place @ up) - 1e-9
+    session.undo()
+    assert session.runner.state(session.stages.animation(character.id)) == "fresh"
     assert np.array_equal(animated(session), before)
 
 
