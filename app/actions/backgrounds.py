@@ -85,16 +85,17 @@ def plate_film(
     ``shadows``: without the subject's own shadow too.
     """
     known, _ = solved_background(session, shadows=shadows)
+    from app.actions.compositing import in_order
+
     count, report = len(known.pictures), progress or silent
     shares: list[float] = []
 
     def pictures() -> Iterator[Picture]:
-        for frame in range(count):
-            made = known.plate(frame)
+        for made in in_order(known.plate, range(count), lambda: report(len(shares) / count)):
             hole = int(made.filled.sum() + made.invented.sum())
             shares.append(float(made.filled.sum()) / hole if hole else 1.0)
             yield made.picture
-            report((frame + 1) / count)
+            report(len(shares) / count)
 
     write_video(target, pictures(), rate(session), count=count)
     return float(np.mean(shares)), min(shares)

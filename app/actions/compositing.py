@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
@@ -29,6 +29,8 @@ SHUTTER = 0.5
 """Share of the frame time that a film camera's shutter is usually open."""
 GRAIN_FRAMES = 5
 MOST_WORKERS = 4
+TICK = 0.05
+"""Seconds between looks at whether a film is still wanted."""
 SheetForm = Literal["png", "exr"]
 Given = TypeVar("Given")
 Made = TypeVar("Made")
@@ -216,24 +218,33 @@ def _look(standing: Standing, world: World, film: Any, background: Background | 
     )  # fmt: skip
 
 
-def in_order(make: Callable[[Given], Made], frames: Iterable[Given]) -> Iterator[Made]:
+def in_order(
+    make: Callable[[Given], Made], frames: Iterable[Given], tick: Callable[[], None] | None = None
+) -> Iterator[Made]:
     """Make something of each frame, or of what is given for it, several at once, and give it in their order.
 
-    No more is taken from ``frames`` than is being worked on.
+    No more is taken from ``frames`` than is being worked on. ``tick`` is called now and then while a frame is waited
+    for; what it raises ends all: what is being worked on then is left to itself, nobody waits for it.
     """
     workers = max(1, min(MOST_WORKERS, os.cpu_count() or 1))
-    with ThreadPoolExecutor(workers, "film") as pool:
-        waiting: deque[Future[Made]] = deque()
-        try:
-            for frame in frames:
-                waiting.append(pool.submit(make, frame))
-                if len(waiting) > workers:
-                    yield waiting.popleft().result()
-            while waiting:
-                yield waiting.popleft().result()
-        finally:
-            for each in waiting:
-                each.cancel()
+    pool, waiting = ThreadPoolExecutor(workers, "film"), deque[Future[Made]]()
+    whole = False
+    try:
+        for frame in frames:
+            waiting.append(pool.submit(make, frame))
+            if len(waiting) > workers:
+                yield _awaited(waiting.popleft(), tick)
+        while waiting:
+            yield _awaited(waiting.popleft(), tick)
+        whole = True
+    finally:
+        pool.shutdown(wait=whole, cancel_futures=True)
+
+
+def _awaited(future: Future[Made], tick: Callable[[], None] | None) -> Made:
+    while tick is not None and not wait([future], timeout=TICK).done:
+        tick()
+    return future.result()
 
 
 def write_sheets(

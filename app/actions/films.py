@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Literal
 
@@ -51,18 +51,23 @@ def render_film(
     """
     motions = animated(session, character_ids)
     filmed = frames or range(len(motions[0].vertices))
-    count = len(filmed)
+    count, done = len(filmed), 0
     report = progress or silent
 
+    def tick() -> None:
+        report(done / count)
+
     def pictures() -> Iterator[Picture]:
+        nonlocal done
         sources: list[Iterable[Picture]] = []
         if view in ("video", "both"):
-            sources.append(_over_video(session, motions, dim, points, filmed, standing=standing))
+            sources.append(_over_video(session, motions, dim, points, filmed, standing=standing, tick=tick))
         if view in ("side", "both"):
             sources.append(_from_side(session, motions[0], motions[0].vertices, filmed))
-        for frame, shown in enumerate(_together(sources, LABELS if view == "both" else ())):
+        for shown in _together(sources, LABELS if view == "both" else ()):
             yield shown
-            report((frame + 1) / count)
+            done += 1
+            report(done / count)
 
     write_video(target, pictures(), rate(session), count=count)
 
@@ -81,7 +86,15 @@ def render_sheets(
     motions = animated(session, character_ids)
     scene = Composition.of(session, motions, standing or Standing())
     filmed = frames or range(len(scene))
-    write_sheets(folder, in_order(scene.sheet, filmed), len(filmed), progress, first=filmed.start, form=form)
+    done, report = 0.0, progress or silent
+
+    def count(fraction: float) -> None:
+        nonlocal done
+        done = fraction
+        report(done)
+
+    sheets = in_order(scene.sheet, filmed, lambda: report(done))
+    write_sheets(folder, sheets, len(filmed), count, first=filmed.start, form=form)
 
 
 def compare_film(
@@ -155,13 +168,14 @@ def _over_video(
     frames: range | None = None,
     *,
     standing: Standing | None = None,
+    tick: Callable[[], None] | None = None,
 ) -> Iterator[Picture]:
     from imitation.rendering import draw_points
 
     scene = Composition.of(session, motions, standing or Standing())
     found = _tracks(session) if points else []
     shown = frames or range(len(scene))
-    for frame, picture in zip(shown, in_order(lambda frame: scene.frame(frame, dim), shown), strict=True):
+    for frame, picture in zip(shown, in_order(lambda frame: scene.frame(frame, dim), shown, tick), strict=True):
         yield draw_points(picture, [track.positions[frame] for track in found]) if found else picture
 
 

@@ -71,6 +71,22 @@ def test_frames_are_made_beside_each_other_and_come_in_order() -> None:
         assert len(taken) <= number + 2 + MOST_WORKERS
 
 
+def test_a_film_that_is_no_longer_wanted_does_not_wait_for_its_frames() -> None:
+    """The question comes while a slow frame is made; what it raises ends the film long before the frame is done."""
+    asked = 0
+
+    def tick() -> None:
+        nonlocal asked
+        asked += 1
+        if asked == 3:
+            raise Cancelled
+
+    start = time.monotonic()
+    with pytest.raises(Cancelled):
+        list(in_order(lambda _: time.sleep(2.0), range(8), tick))
+    assert time.monotonic() - start < 1.5
+
+
 def test_light_and_blur_change_the_preview(solved: Session) -> None:
     """Each control is seen in the picture; the same order gives the same picture."""
     previewer = Previewer()
