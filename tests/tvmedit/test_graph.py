@@ -12,7 +12,9 @@ import tvmedit
 from imitation import InputError
 from resources.performer import Capture
 from tvmedit.cuts import GroundMove, align_frames
+from tvmedit.cuts.placement import joint_move
 from tvmedit.features.measure import surface_samples
+from tvmedit.graph.database import representative
 from tvmedit.graph.pruning import prune_absolute, prune_printed
 
 
@@ -145,6 +147,44 @@ def test_a_placed_walk_walks_on(capture: Capture, graph: tvmedit.MotionGraph) ->
     seams = tvmedit.seam_scores(graph, performance)
     assert max(seam.score for seam in seams) < 1.2
     assert all(seam.before > seam.after for seam in seams)
+
+
+def test_a_motion_that_ends_with_its_sequence_walks_on_too(
+    capture: Capture, analysis: tvmedit.Analysis, graph: tvmedit.MotionGraph
+) -> None:
+    """Nothing follows its last frame: the body is carried on, not held, wherever in the walk the filming ends."""
+    walk = analysis.structure.clusters[-1]
+    period = round(walk.period)
+    carried, held = [], []
+    for last in range(walk.first + period, walk.last - 1):
+        ended = attrs.evolve(
+            analysis, headings=analysis.headings[: last + 1], centres=analysis.centres[: last + 1],
+            samples=analysis.samples[: last + 1],
+        )  # fmt: skip
+        short = attrs.evolve(graph, analyses=(ended,))
+        first = last + 1 - period
+        move = joint_move(short, tvmedit.Cut(0, "wrap", len(graph.nodes) - 1, len(graph.nodes) - 1, last, first, 0.0))
+        # What came next was filmed, though the analysis has not seen it.
+        true = capture.joints[last + 1]
+        carried.append(np.linalg.norm(move.apply(capture.joints[first]) - true, axis=1).mean())
+        held.append(np.linalg.norm(capture.joints[last] - true, axis=1).mean())
+    assert np.mean(carried) < 0.75 * np.mean(held)
+
+
+def test_a_texton_that_something_follows_is_preferred(analysis: tvmedit.Analysis) -> None:
+    """Of equal textons not the one that the sequence ends with; and a motion is not left after its last frame there."""
+    count = 30
+    atoms = np.zeros((count, count), np.float32)
+    cluster = tvmedit.Cluster(0, count - 1, True, ((10, 19), (20, 29)), 10.0)
+    atoms[20, 29], atoms[10, 20] = 0.1, 0.5
+    assert representative(atoms, cluster, printed=False) == 0
+    assert representative(atoms, attrs.evolve(cluster, textons=((20, 29),)), printed=False) == 0
+    last = analysis.structure.clusters[-1].textons[-1]
+    end = len(analysis) - 1
+    nodes = [(0, end - (last[1] - last[0]), end), (0, *analysis.structure.clusters[0].textons[0])]
+    graph = tvmedit.motion_graph([analysis], textons=nodes)
+    if graph.nodes[0].cyclic:
+        assert graph.transitions[0, 1, 0] < end
 
 
 @pytest.mark.slow

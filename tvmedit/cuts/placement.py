@@ -5,14 +5,15 @@ from __future__ import annotations
 import attrs
 import numpy as np
 
+from tvmedit.analysis import Analysis
 from tvmedit.cuts.alignment import GroundMove, align_frames
 from tvmedit.graph.motion_graph import MotionGraph
 from tvmedit.graph.performance import Cut, Performance
 
 WINDOW = (-1, 0, 1)
 """Frames around a joint that share one move."""
-
-
+CARRIED = 3
+"""Frames at the end of a sequence by which the body is carried on where nothing follows."""
 Joint = tuple[int, int, int, int]
 """Sequence and frame left, sequence and frame entered."""
 
@@ -23,7 +24,8 @@ def align_performance(
     """Place all clips of a performance.
 
     At a cut from frame a to frame b, b is laid onto a + 1, the frame that would have come, so that travel, turning
-    and speed go on; at a wrap, the first frame onto the one after the last. The moves accumulate: a walk walks on.
+    and speed go on; at a wrap, the first frame onto the one after the last. Where the sequence ends with a, b is laid
+    onto a and carried on as the body moved in the last frames. The moves accumulate: a walk walks on.
 
     Parameters
     ----------
@@ -69,6 +71,21 @@ def joint_move(graph: MotionGraph, cut: Cut, known: dict[Joint, GroundMove] | No
     move = align_frames(
         [after.samples[cut.enter + k] for k in shifts], [before.samples[follows + k] for k in shifts], yaw=yaw
     )
+    if cut.leave + 1 > follows:
+        move = _one_frame_on(before).after(move)
     if known is not None:
         known[key] = move
     return move
+
+
+def _one_frame_on(analysis: Analysis) -> GroundMove:
+    """Move of a body that goes on as it went in a sequence's last frames: what would have come was not filmed."""
+    steps = min(CARRIED, len(analysis) - 1)
+    if steps < 1:
+        return GroundMove(0.0, 0.0, 0.0)
+    turned = analysis.headings[-1] - analysis.headings[-1 - steps]
+    yaw = float(np.angle(np.exp(1j * turned))) / steps
+    c, s = np.cos(yaw), np.sin(yaw)
+    x, y = analysis.centres[-1]
+    ahead = analysis.centres[-1] + (analysis.centres[-1] - analysis.centres[-1 - steps]) / steps
+    return GroundMove(yaw, float(ahead[0] - c * x + s * y), float(ahead[1] - s * x - c * y))

@@ -58,8 +58,15 @@ def texton_distance(atoms: NDArray[np.floating], texton: Span, *, printed: bool)
 
 
 def representative(atoms: NDArray[np.floating], cluster: Cluster, *, printed: bool) -> int:
-    """Number of the texton that repeats most smoothly (eq. 9); of equal ones the first."""
-    return int(np.argmin([texton_distance(atoms, texton, printed=printed) for texton in cluster.textons]))
+    """Number of the texton that repeats most smoothly (eq. 9); of equal ones the first.
+
+    One that ends with the sequence has no frame after it to be laid onto: another one is taken if there is any.
+    """
+    distances = np.array([texton_distance(atoms, texton, printed=printed) for texton in cluster.textons])
+    followed = np.array([last + 1 < len(atoms) for _, last in cluster.textons])
+    if not printed and followed.any():
+        distances[~followed] = np.inf
+    return int(np.argmin(distances))
 
 
 def database(analyses: Sequence[Analysis], *, printed: bool, textons: Textons | None) -> tuple[Node, ...]:

@@ -52,6 +52,9 @@ def find_transitions(analyses: Sequence[Analysis], nodes: Sequence[Node], *, pri
                 continue
             square = _slide(stacks[i].squares(stacks[j]), taps)
             leave = np.arange(len(node)) if node.cyclic else np.array([len(node) - 1])
+            if not printed and node.cyclic and len(node) > 1 and node.last + 1 >= len(analyses[node.sequence]):
+                # What would come after its last frame was not filmed.
+                leave = leave[:-1]
             enter = np.arange(len(other)) if other.cyclic else np.array([0])
             block = square[np.ix_(leave + ahead, enter)]
             best = int(np.argmin(block))
