@@ -100,7 +100,7 @@ def depth(document: Document) -> Stage:
         return Stage("depth", LABEL, _depth, blocked=tracking.NO_CLIP)
     needs: tuple[Stage, ...] = (plan(document), scene.cameras(document), tracking.masks(document))
     needs += _sketches(document, "second")
-    return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=4, weight=2.0)
+    return Stage("depth", LABEL, _depth, (clip, WIDTH), needs, version=5, weight=2.0)
 
 
 def slots(frames: int) -> int:
@@ -126,10 +126,7 @@ def in_world(depth_: NDArray[np.floating], world: World) -> NDArray[np.float32]:
 
 def map_in_world(each: DepthMap, world: World) -> DepthMap:
     """A depth map in the user's world."""
-    return attrs.evolve(
-        each, depth=in_world(each.depth, world), camera=world.camera(each.frame),
-        tolerance=each.tolerance * world.scale,
-    )  # fmt: skip
+    return attrs.evolve(each, depth=in_world(each.depth, world), camera=world.camera(each.frame))
 
 
 def background(

@@ -89,7 +89,7 @@ class Background:
         self._inverse: dict[tuple[int, int, tuple[int, int]], NDArray[np.float32]] = {}
         middle = float(np.nanmedian(self.maps[len(self.maps) // 2].depth))
         self._speed = speeds(cameras, range(len(cameras)), self.pictures.size, middle)
-        self.tolerance = 1.5 * self.maps[0].tolerance / middle**2
+        self.tolerance = 1.5 * self.maps[0].tolerance / middle
         """Difference of inverse depths that counts as the same surface."""
 
     def depth(self, frame: int) -> DepthMap:

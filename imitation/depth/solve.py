@@ -13,9 +13,10 @@ from imitation.cameras.path import CameraPath
 from imitation.depth.agreement import agreeing
 from imitation.depth.checks import Range, check_input, find_range, range_near
 from imitation.depth.depthmap import DepthMap, resized
+from imitation.depth.edges import with_edges
 from imitation.depth.lead import lead
 from imitation.depth.pictures import LONGEST, Pictures
-from imitation.depth.plain import with_planes
+from imitation.depth.plain import plain_surfaces, with_planes
 from imitation.depth.projection import consensus, projected_inverse
 from imitation.depth.semiglobal import semiglobal
 from imitation.depth.sweep import NEUTRAL, geometry, sweep
@@ -117,7 +118,7 @@ class DepthSolver:
             1.5 * sketch.step,
         )  # fmt: skip
         inverse, count = self._filled(sketch, count, others)
-        inverse = self._averaged(inverse, sketch, others)
+        inverse = self._edged(self._averaged(inverse, sketch, others), frame, list(sketches))
         inverse = resized(inverse, pictures.full, 3 * sketch.step)
         confidence = cv2.resize(count, pictures.full, interpolation=cv2.INTER_NEAREST_EXACT)
         depth = (1 / inverse).astype(np.float32)
@@ -126,6 +127,17 @@ class DepthSolver:
             depth[hidden], confidence[hidden] = np.nan, 0
         middle = float(np.median(sketch.inverse))
         return DepthMap(frame, depth, confidence, pictures.cameras[frame], sketch.step / middle)
+
+    def _edged(self, inverse: NDArray[np.float32], frame: int, keys: Sequence[int]) -> NDArray[np.float32]:
+        """The same with steps of depth where the pictures have them."""
+        pictures, views = self.pictures, self.views(frame, keys)
+        hidden = pictures.hidden(frame)
+        settled = plain_surfaces(pictures.shown(frame), hidden)[0] > 0
+        return with_edges(
+            inverse, pictures.colour(frame), hidden, settled, pictures.camera(frame),
+            np.stack([pictures.colour(v) for v in views]), np.stack([pictures.hidden(v) for v in views]),
+            [pictures.camera(v) for v in views],
+        )  # fmt: skip
 
     def _averaged(self, inverse: NDArray[np.float32], sketch: Sketch, others: Sequence[Sketch]) -> NDArray[np.float32]:
         """The mean of a map and of what agrees with it in the maps nearest in time.

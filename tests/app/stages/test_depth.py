@@ -18,7 +18,7 @@ from app.stages.media import Media
 from app.stages.project import Stages
 from app.stages.results import Masks, World
 from imitation import CameraPath, Cancelled
-from imitation.depth import DepthSolver, background_depth
+from imitation.depth import Background, DepthSolver, background_depth
 from imitation.depth.views import key_frames
 from tests.imitation.depth.scenes import filmed_room
 
@@ -126,6 +126,10 @@ def test_a_stage_gives_what_the_engine_gives_and_the_world_scales_it() -> None:
     scaled = World(turned, 2.0, np.eye(3), np.zeros(3), np.array([0, 0, 1.0]), 0.0, True, True, True, None, "")
     each = map_in_world(maps[0], scaled)
     np.testing.assert_allclose(each.depth, 2 * maps[0].depth)
+    assert each.tolerance == maps[0].tolerance, "it is relative"
+    near, far = (Background(world.frames, path, [one], masks=world.masks) for path, one in (
+        (world.cameras, maps[0]), (turned, each)))  # fmt: skip
+    np.testing.assert_allclose(far.tolerance, near.tolerance / 2, rtol=1e-6)
     before, after = maps[0].points(8), each.points(8)
     np.testing.assert_allclose(after, 2 * before + [1, 2, 3], atol=1e-4)
     np.testing.assert_allclose(in_world(plate.depth, scaled), 2 * plate.depth)
