@@ -60,6 +60,16 @@ class Pages(QStackedWidget):
             self.made.emit(page)
         return page
 
+    def wake(self) -> None:
+        """Let the pages read what they show: the window is on the screen."""
+        for page in self.workspaces.values():
+            page.asleep = False
+
+    def fit(self, window_width: int) -> None:
+        """Fit into a window of another width."""
+        for page in self.workspaces.values():
+            page.fit(window_width)
+
     @property
     def in_sight(self) -> Workspace:
         """The workspace chosen, be it under the welcome."""

@@ -162,14 +162,13 @@ class Shell(QMainWindow, NamedPages):
 
     def _wake(self) -> None:
         self.seen = True
-        for page in self.pages.workspaces.values():
-            page.asleep = False
+        self.pages.wake()
         self._take_up()
 
     def _take_up(self) -> None:
         if self.seen and self.opened is not None:
             self.opened.keeper.keep_up()
-            self._refresh.start()
+            self.refresh_soon()
 
     @property
     def at_rest(self) -> bool:
@@ -212,8 +211,7 @@ class Shell(QMainWindow, NamedPages):
         """Fit the lanes to the new height, and the columns that fold to the new width."""
         super().resizeEvent(event)
         self._fit_lanes()
-        for page in self.pages.workspaces.values():
-            page.fit(self.width())
+        self.pages.fit(self.width())
 
     def _show_frame(self, frame: int) -> None:
         self.timeline.show_frame(frame)
