@@ -16,6 +16,7 @@ from imitation.geometry.projection import Camera
 Picture = NDArray[np.uint8]
 SUPPORT = 2.5  # grey levels of disagreement that one more key frame with the same depth outweighs
 AGAINST = 8.0  # grey levels that a key frame counts against a depth that it sees through
+ASKED = 3000  # points of a picture that are asked how bright it is
 UNSEEN = 40.0  # disagreement of a depth that fewer than two frames can judge
 
 
@@ -32,7 +33,8 @@ def gains(
 
     The median ratio over background points that both show, of which neither is nearly black or burnt out.
     """
-    rows, columns = np.mgrid[3 : hole.shape[0] : 7, 3 : hole.shape[1] : 7]
+    step = max(7, round(np.sqrt(hole.size / ASKED)))
+    rows, columns = np.mgrid[3 : hole.shape[0] : step, 3 : hole.shape[1] : step]
     rows, columns = rows.ravel(), columns.ravel()
     use = ~hole[rows, columns] & (inverse[rows, columns] > 0)
     rows, columns = rows[use], columns[use]

@@ -29,21 +29,34 @@ def between_parts(
     picture : uint8 (h, w, 3). mask : 1 on the subject. hidden : 1 on the subject and its rim.
     radius : width of the rim, pixels.
     """
+    spared = np.zeros(mask.shape, bool)
+    rows, columns = np.flatnonzero(hidden.any(axis=1)), np.flatnonzero(hidden.any(axis=0))
+    if not len(rows) or not mask.any():
+        return spared
+    reach, scale = round(radius) + 2, max(mask.shape) / 960
+    # Nothing farther away than the colours' mean reaches has a say.
+    margin = 4 * reach
+    box = (
+        slice(max(0, int(rows[0]) - margin), int(rows[-1]) + margin + 1),
+        slice(max(0, int(columns[0]) - margin), int(columns[-1]) + margin + 1),
+    )
+    spared[box] = _between(picture[box], mask[box], hidden[box], reach, scale)
+    return spared
+
+
+def _between(
+    picture: NDArray[np.uint8], mask: NDArray[np.uint8], hidden: NDArray[np.uint8], reach: int, scale: float
+) -> NDArray[np.bool_]:
     import cv2
 
-    none = np.zeros(mask.shape, bool)
-    if not mask.any():
-        return none
-    reach = round(radius) + 2
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * reach + 1, 2 * reach + 1))
     padded = cv2.copyMakeBorder(mask, reach, reach, reach, reach, cv2.BORDER_CONSTANT, value=0)
     closed = cv2.morphologyEx(padded, cv2.MORPH_CLOSE, disc)[reach:-reach, reach:-reach]
     rim = (mask == 0) & (hidden > 0)
     away = cv2.distanceTransform(1 - mask, cv2.DIST_L2, 5)
-    scale = max(mask.shape) / 960
     between: NDArray[np.bool_] = rim & (closed > 0) & (away > max(1.5, MARGIN * scale))
     if not between.any():
-        return none
+        return between
     # Its edges, and where it leaves the rim, are of the colour that it has between.
     smooth, sure = picture.astype(np.float32), between.astype(np.float32)
     share = cv2.GaussianBlur(sure, (0, 0), reach)

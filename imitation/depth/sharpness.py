@@ -75,12 +75,13 @@ class Smear:
     along: Array
 
     def of(self, picture: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np.float32]:
-        """A picture (h, w, 3) blurred so, its unknown pixels not counting; unchanged where nothing is known."""
+        """A picture (h, w, channels) blurred so, its unknown pixels not counting; unchanged where nothing is known."""
         import cv2
 
         kernel = line(self.share * self.along)
         weight = known.astype(np.float32)
         total = cv2.filter2D(picture * weight[..., None], cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE)
+        total = total.reshape(picture.shape)
         count = cv2.filter2D(weight, cv2.CV_32F, kernel, borderType=cv2.BORDER_REPLICATE)[..., None]
         blurred: NDArray[np.float32] = np.where(count > 1e-3, total / np.maximum(count, 1e-3), picture)
         return blurred
@@ -129,18 +130,23 @@ def smear(
     if inner.sum() < 200:
         return none
 
+    grey, other_grey = shown.mean(axis=-1), picture.mean(axis=-1)
+
     def apart(made: NDArray[Any]) -> float:
-        rest = made - shown
+        rest = made - grey
         rest -= cv2.GaussianBlur(rest, (0, 0), 6.0)
         return float(np.mean(np.minimum(np.abs(rest[inner]), 40.0) ** 2))
 
-    sharp = apart(picture)
+    sharp = apart(other_grey)
     best, least = none, GAIN * sharp
-    for share in OPEN:
+    for number, share in enumerate(OPEN):
         tried = Smear(share, along)
-        left = apart(tried.of(picture, there))
+        left = apart(tried.of(other_grey[..., None], there)[..., 0])
         if left < least:
             best, least = tried, left
+        elif number and left > 1.1 * min(sharp, least):
+            # The more it is blurred beyond what fits, the worse.
+            break
     return best
 
 
