@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPolygonF
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from app.window import fonts
 
 UNDERLAY = QColor(0, 0, 0, 190)
 PLATE = QColor(0, 0, 0, 205)
+PHASES = 4
+"""Places within a pixel at which rings are stamped."""
 _THICK, _WHITE = QPen(UNDERLAY, 3.6), QPen(QColor(255, 255, 255, 235), 1.8)
 
 
@@ -54,7 +57,37 @@ def ring(
     filled: bool = False,
     dot: bool = True,
 ) -> None:
-    """A round handle: a ring, or a filled disc."""
+    """A round handle: a ring, or a filled disc.
+
+    It is stamped to a quarter of a pixel: three smooth circles take ten times as long as one small picture of them.
+    """
+    ratio = painter.device().devicePixelRatio()
+    if ratio % 1:
+        _draw_ring(painter, x, y, colour, radius, filled, dot)
+        return
+    (left, right), (top, low) = (divmod(round(PHASES * ratio * value), PHASES) for value in (x, y))
+    stamp, half = _ring_stamp(colour.rgba(), radius, filled, dot, right, low, round(ratio))
+    painter.drawPixmap(QPointF((left - half) / ratio, (top - half) / ratio), stamp)
+
+
+@lru_cache(maxsize=1024)
+def _ring_stamp(
+    colour: int, radius: float, filled: bool, dot: bool, right: int, low: int, ratio: int
+) -> tuple[QPixmap, int]:
+    """A picture of a ring, so many quarters of a pixel off its middle, and half its size in pixels; colours as ARGB."""
+    half = math.ceil((radius + 2.0) * ratio) + 1
+    stamp = QPixmap(2 * half + 1, 2 * half + 1)
+    stamp.setDevicePixelRatio(ratio)
+    stamp.fill(Qt.GlobalColor.transparent)
+    painter = QPainter(stamp)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    x, y = ((half + part / PHASES) / ratio for part in (right, low))
+    _draw_ring(painter, x, y, QColor.fromRgba(colour), radius, filled, dot)
+    painter.end()
+    return stamp, half
+
+
+def _draw_ring(painter: QPainter, x: float, y: float, colour: QColor, radius: float, filled: bool, dot: bool) -> None:
     centre = QPointF(x, y)
     painter.setPen(_THICK)
     painter.setBrush(colour if filled else Qt.BrushStyle.NoBrush)

@@ -165,11 +165,13 @@ class CharacterWorkspace(Workspace):
             self.lanes_changed.emit()  # an edit of the frame in sight is drawn otherwise; nothing else hangs on it
 
     def document_changed(self, before: Document, after: Document) -> None:
-        """Take the document as it is; the window has everything shown once what changes it is through."""
+        """Take the document as it is, and list it; pictures are made once whatever changes it is through."""
         if self.placing is not None:
             self.placing.follow(before, after)
         if self.project is not None:
             self.motion.read(self.project)
+            if self.isVisible():
+                self._list(self.project)
 
     def command(self, name: str) -> bool:
         """Do a command of this workspace; says whether it was one."""
@@ -211,8 +213,13 @@ class CharacterWorkspace(Workspace):
         if not self.isVisible():
             return
         self.tracks.refresh()
-        character = self.character
-        vertices = self.pose() if character is not None else None
+        vertices = self._list(project)
+        self._show_mesh(self.character, vertices)
+        self._show_checks(self.character)
+
+    def _list(self, project: Project) -> NDArray[np.float64] | None:
+        """Show in the inspector what there is; gives the pose in sight."""
+        vertices = self.pose() if self.character is not None else None
         place = None
         if vertices is not None and 0 <= project.vertex < len(vertices):
             x, y, z = (float(value) for value in vertices[project.vertex])
@@ -220,8 +227,7 @@ class CharacterWorkspace(Workspace):
         mode = self.placing.mode if self.placing is not None else None
         copied = self.posing is not None and self.posing.copy is not None
         self.inspector.show_character(project, place, mode=mode or "", copied=copied)
-        self._show_mesh(character, vertices)
-        self._show_checks(character)
+        return vertices
 
     def show_pose(self) -> None:
         """Show the pose of the frame and its handles, nothing else: it follows the mouse."""
