@@ -108,3 +108,22 @@ def test_the_cheapest_cut_is_still_the_cheapest() -> None:
     every = [price(0, 30)] + [price(0, a) + price(a, 30) for a in range(1, 30)]
     every += [price(0, a) + price(a, b) + price(b, 30) for a in range(1, 29) for b in range(a + 1, 30)]
     assert found == pytest.approx(min(every))
+
+
+def test_a_rest_is_one_motion_that_is_played_once() -> None:
+    """Between two circles somebody stands still, swaying as it comes; a small motion that repeats is none."""
+    random = np.random.default_rng(5)
+    first, last = circle(15.0, 75, (0.0, 0.0)), circle(15.0, 75, (4.0, 0.0))
+    sway = np.cumsum(random.normal(0.0, 0.01, (60, 3)), axis=0) + random.normal(0.0, 0.02, (60, 3)) + [0.0, 0.0, 2.0]
+    points = np.concatenate([first, sway, last])
+    structure = tvmedit.parse_structure(distances(points), fps=15)
+    rest = next(cluster for cluster in structure.clusters if cluster.first <= 100 <= cluster.last)
+    assert not rest.cyclic
+    assert rest.textons == ((rest.first, rest.last),)
+    assert len(rest) > 45
+    assert [cluster.cyclic for cluster in structure.clusters] == [True, False, True]
+    forced = tvmedit.parse_structure(distances(points), fps=15, force_cyclic=True)
+    assert next(cluster for cluster in forced.clusters if cluster.first <= 100 <= cluster.last).cyclic
+    small = 0.1 * first[:60] + [0.0, 0.0, 2.0]
+    again = tvmedit.parse_structure(distances(np.concatenate([first, small, last])), fps=15)
+    assert all(cluster.cyclic for cluster in again.clusters)

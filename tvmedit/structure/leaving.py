@@ -17,6 +17,8 @@ UNLIKE = 0.6
 """A frame this many lambda from a rest's posture does not belong to it."""
 HELD = 0.4
 """A rest: half of its frames are no further than this many lambda from one posture."""
+ALIKE = 1.5
+"""In a rest frames half a period apart are no more unlike than so many times those a whole period apart."""
 LONGEST_SECONDS = 1.0
 """So long an action may pass through the posture of the rest beside it."""
 
@@ -35,6 +37,27 @@ def settle(atoms: NDArray[np.float32], clusters: list[Cluster], novelty: float, 
             frame = after.first - _passed(_away(atoms, before, novelty)[::-1][:reach], novelty)
         settled[k - 1 : k + 1] = _joined_at(before, after, frame)
     return settled
+
+
+def held(atoms: NDArray[np.float32], clusters: list[Cluster], novelty: float) -> list[Cluster]:
+    """Make each rest one motion that is played once: standing repeats at any period, so its period means nothing."""
+    return [_once(cluster) if _rests(atoms, cluster, novelty) else cluster for cluster in clusters]
+
+
+def _rests(atoms: NDArray[np.float32], cluster: Cluster, novelty: float) -> bool:
+    """Whether a cluster holds one posture, in which half a period makes no more difference than a whole one."""
+    period = round(cluster.period)
+    frames = np.arange(cluster.first, cluster.last + 1 - period)
+    if not cluster.cyclic or len(frames) < 1 or not len(_away(atoms, cluster, novelty)):
+        return False
+    whole, half = (float(np.median(atoms[frames, frames + lag])) for lag in (period, (period + 1) // 2))
+    return half < ALIKE * whole
+
+
+def _once(cluster: Cluster) -> Cluster:
+    span = (cluster.first, cluster.last)
+    reason = "A rest: it holds one posture, and is played once."
+    return attrs.evolve(cluster, cyclic=False, textons=(span,), period=float(len(cluster)), reason=reason)
 
 
 def _away(atoms: NDArray[np.float32], cluster: Cluster, novelty: float) -> NDArray[np.float32]:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from imitation.errors import InputError
-from tvmedit.structure.leaving import settle
+from tvmedit.structure.leaving import held, settle
 from tvmedit.structure.segments import best_period, best_segments, repeat_costs, repeats_within, texton_chain
 from tvmedit.structure.splitting import split_unlike
 from tvmedit.structure.structure import Cluster, Structure, texton_curve
@@ -67,6 +67,8 @@ def parse_optimal(
         clusters = _merged(atoms, clusters, novelty)
         clusters = [piece for cluster in clusters for piece in split_unlike(atoms, cluster, novelty)]
         clusters = settle(atoms, clusters, novelty, fps)
+    if not force_cyclic:
+        clusters = held(atoms, clusters, novelty)
     if force_cyclic and (boundaries is not None or len(clusters) == 1):
         clusters = [_one_round(cluster, shortest) for cluster in clusters]
     clusters = _kinds(atoms, clusters, novelty)
