@@ -33,6 +33,7 @@ from app.window.performance.graph_view import (
     node_at,
     on_bow,
 )
+from app.window.performance.sequence_cards import Card
 from app.window.timeline.axis import LABELS, Axis
 from app.window.timeline.lanes import RULER
 
@@ -171,6 +172,16 @@ def test_cuts_say_what_can_be_done() -> None:
     seen = replace(cut, after=1.9)
     assert (tone(seen), seen.apart) == ("warn", False)
     assert "Switch Blend on" in advice(seen)
+
+
+def test_many_cards_are_lower() -> None:
+    """Each sequence takes less room where there are many; what is to be known of it is still there."""
+    one = Card("s1", "Walk", "114 frames · 25 fps", warnings=("guessed: 25 fps",))
+    low = replace(one, low=True)
+    assert low.height <= one.height - 20
+    assert low.height - low.base == one.height - one.base, "warnings have their lines"
+    assert low.strip_room[0] + low.strip_room[1] < low.base
+    assert low.picture < low.base
 
 
 def test_words_of_the_preview_go_on_in_another_line(qapp: object) -> None:

@@ -230,20 +230,38 @@ def test_wheel_and_drag_move_the_view(hands: PerformingHands) -> None:
     assert hands.canvas.lens == fitted
 
 
+def at_rest(hands: PerformingHands) -> None:
+    """Wait for the work under way: a percentage that grows has its room a moment after it is written."""
+    settle(50)
+    wait_for(lambda: not hands.shell.project.progress, 60)
+    settle(100)
+
+
 @pytest.mark.parametrize("size", [(1180, 720), (1440, 900), (1920, 1080)])
 def test_nothing_is_clipped(hands: PerformingHands, size: tuple[int, int]) -> None:
     """At three sizes every word has its room, with a path and without one."""
     hands.shell.resize(*size)
     hands.compose(WALK, SQUAT)
-    settle(100)
+    at_rest(hands)
     assert_nothing_clipped(hands.shell)
     hands.click(MARCH)
     hands.press(Qt.Key.Key_X)
     wait_for(lambda: hands.page.composed.note.isVisible(), 30)
-    settle(100)
+    at_rest(hands)
     assert_nothing_clipped(hands.shell)
     note = hands.page.composed.note
     assert note.sentence.heightForWidth(note.sentence.width()) <= note.sentence.height() + 1
+
+
+def test_what_is_not_composed_yet_has_nothing_to_play(hands: PerformingHands) -> None:
+    """Without key motions the row of the timeline shows neither frames nor a legend, and its buttons wait."""
+    transport = hands.page.composed.transport
+    assert not any(button.isEnabled() for button in transport.buttons.values())
+    assert (transport.number.text(), transport.legend.entries) == ("", ())
+    hands.compose(WALK, SQUAT)
+    wait_for(lambda: all(button.isEnabled() for button in transport.buttons.values()))
+    assert transport.number.text() == "0"
+    assert [text for text, _, _ in transport.legend.entries] == ["hidden", "jump is seen", "poses far apart"]
 
 
 def test_every_control_says_what_it_is(hands: PerformingHands) -> None:
@@ -274,5 +292,7 @@ def test_an_empty_project_invites(open_shell: Callable[[Session], Shell]) -> Non
     assert page.graph.nothing.add.isVisible()
     assert page.graph.nothing.sample.isVisible()
     assert not shell.timeline.isVisible()
+    idle = (page.database, page.graph.filter, page.graph.forbid, page.graph.key, page.preview.footer, page.composed)
+    assert not any(each.isVisible() for each in idle), "what has nothing to work on is not there"
     QTest.keyClick(shell, Qt.Key.Key_F1)
     assert shell.pages.welcoming

@@ -171,7 +171,7 @@ class Preview(Panel):
         if not self.state.document.sequences:
             return ""
         if self.state.shows == "performance":
-            return "composed performance"
+            return "composed performance" if self.state.document.performance.keys else ""
         found = [each.name for each in self.state.document.sequences if each.id == self.state.sequence_id]
         return f"{found[0]} as captured" if found else ""
 
