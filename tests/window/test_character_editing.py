@@ -253,6 +253,31 @@ def test_several_vertices_first_then_ctrl_return(posed: Shell) -> None:
         assert np.allclose(pose(posed, 10)[number], moves[number].place, atol=1e-6)
 
 
+def test_a_free_vertex_moves_like_a_point(posed: Shell) -> None:
+    """A control vertex without a pair takes over a point's motion and lets it go again; a paired one has its own."""
+    section = posed.character.inspector.vertex
+    posed.project.select_vertex(vertex(posed, "nose"))
+    settle(60)
+    assert not section.like.isEnabled()
+    view, taken = posed.character.mesh.viewport, set(character(posed).pairs.values())
+    places = view.lens().to_widget(view.vertices)
+    free = next(n for n, (x, y) in enumerate(places) if n not in taken and view.vertex_at((x, y)) == n)
+    drag_vertex(posed, free, 12, -12)
+    wait_for(lambda: 10 in character(posed).edits)
+    moved = next(iter(character(posed).edits[10].moves))
+    quiet(posed)
+    posed.project.select_vertex(moved)
+    wait_for(section.like.isEnabled)
+    section.like.setFocus()
+    QTest.keyClick(section.like, Qt.Key.Key_Down)
+    track = posed.project.document.tracks[0]
+    assert dict(character(posed).following) == {moved: track.id}
+    assert posed.project.session.history.undo_label.endswith(f"follow {track.name}")
+    QTest.keyClick(section.like, Qt.Key.Key_Up)
+    assert not character(posed).following
+    quiet(posed)
+
+
 def test_moves_are_listed_by_frame(posed: Shell) -> None:
     """A row goes to its frame and vertex; its eye mutes, its bin deletes; the bin of the frame takes all."""
     nose, tail = vertex(posed, "nose"), vertex(posed, "tail root")

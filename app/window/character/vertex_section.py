@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.model.character import Character, Move
-from app.model.edits import characters
+from app.model.edits import characters, poses
 from app.window.character.handles_of import control_vertices, vertex_title
 from app.window.character.place_section import LENGTH
-from app.window.controls import Chip, NumberField, Row, button, label
+from app.window.controls import Chip, Chooser, NumberField, Row, button, label
 from app.window.project import Project
 
 Place3 = tuple[float, float, float]
@@ -38,13 +38,14 @@ class VertexSection(QWidget):
         head.addWidget(self.name, 1)
         head.addWidget(self.chip)
         column.addLayout(head)
-        self.follows = QComboBox()
-        self.follows.setAccessibleName("Follows point")
+        self.follows = Chooser(name="Follows point")
         self.follows.activated.connect(self._follow)
         column.addWidget(Row("Follows point", self.follows))
-        self.kind = QComboBox()
-        self.kind.setAccessibleName("What holds it in this frame")
-        self.kind.addItems(list(KINDS))
+        self.like = Chooser(name="Moves like")
+        self.like.setToolTip("A free control vertex takes over a point's motion between the edits without lying on it")
+        self.like.activated.connect(self._move_like)
+        column.addWidget(Row("Moves like", self.like))
+        self.kind = Chooser(KINDS, "What holds it in this frame")
         self.kind.activated.connect(lambda _: self._typed(0.0))
         column.addWidget(Row("Constraint", self.kind))
         self.place = [NumberField(LENGTH) for _ in range(3)]
@@ -77,7 +78,8 @@ class VertexSection(QWidget):
             states = [("muted here", "neutral")] if move and move.muted else [("edited here", "edit")] if move else []
             states += [("paired", "accent")] if paired else [("free", "neutral")]
             self.chip.show_state(*states[0])
-        self._show_followed(project, paired or character.following.get(vertex, ""))
+        self._show_followed(project, paired or "", character.following.get(vertex, ""))
+        self.like.setEnabled(paired is None and vertex in control_vertices(character))
         self.kind.setEnabled(move is not None)
         self.kind.setCurrentIndex(1 if move is not None and move.on_ray else 0)
         for field, value in zip(self.place, place or (0.0, 0.0, 0.0), strict=True):
@@ -91,16 +93,21 @@ class VertexSection(QWidget):
         self.unmove_button.setEnabled(move is not None)
         self.forget_button.setEnabled(control)
 
-    def _show_followed(self, project: Project, followed: str) -> None:
-        self.follows.blockSignals(True)
+    def _show_followed(self, project: Project, followed: str, like: str) -> None:
         names = (("none", ""), *((track.name, track.id) for track in project.document.tracks))
         if names != self._names:
             self._names = names
-            self.follows.clear()
-            for name, track_id in names:
-                self.follows.addItem(name, track_id)
+            for box in (self.follows, self.like):
+                box.clear()
+                for name, track_id in names:
+                    box.addItem(name, track_id)
         self.follows.setCurrentIndex(max(self.follows.findData(followed), 0))
-        self.follows.blockSignals(False)
+        self.like.setCurrentIndex(max(self.like.findData(like), 0))
+
+    def _move_like(self, index: int) -> None:
+        project, character = self.project, self.character
+        if project is not None and character is not None and project.vertex >= 0:
+            project.edit(poses.follow_track, character.id, project.vertex, self.like.itemData(index) or None)
 
     def _follow(self, index: int) -> None:
         project, character = self.project, self.character
