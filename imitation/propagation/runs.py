@@ -28,7 +28,9 @@ class Pass:
     """
 
     def __init__(self, base: Base, deformer: Deformer, controls: Sequence[int], pose: Pose, reference: Array) -> None:
-        self.base, self.deformer, self.controls = base, deformer, list(controls)
+        self.base, self.deformer = base, deformer
+        # The same for all frames, so they are asked for once.
+        self._modes = typical_modes(base, deformer, list(controls))
         self._away, self._last = [pose.inner - reference], pose
 
     def solve(self, frame: int, targets: Array, places: Mapping[int, Array], reference: Array) -> Pose:
@@ -44,8 +46,7 @@ class Pass:
         handles = deformer.system.place[rows.handles]
         far = [float(np.square(residuals(rows, guess[handles])).sum()) for guess in guesses]
         begin = attrs.evolve(self._last, inner=guesses[int(np.argmin(far))])
-        modes = typical_modes(self.base, deformer, self.controls)
-        pose = deformer.solve_rows(rows, deformer.begin(rows, begin), modes=modes)
+        pose = deformer.solve_rows(rows, deformer.begin(rows, begin), modes=self._modes)
         self._away, self._last = [*self._away[-1:], pose.inner - reference], pose
         return pose
 

@@ -132,11 +132,11 @@ class SpanSolver:
 
         A frame between two edits that lies beyond their middle has to wait for those next to the farther edit.
         """
-        return [
-            (min(abs(each - origin) for each in run.frames) + position, frame)
-            for run in self._runs
-            for position, frame in enumerate(run.frames)
-        ]
+        ranked: list[tuple[int, int]] = []
+        for run in self._runs:
+            nearest = min((abs(each - origin) for each in run.frames), default=0)
+            ranked += [(nearest + position, frame) for position, frame in enumerate(run.frames)]
+        return ranked
 
     def key_targets(self, frame: int) -> Array:
         """Corrected places (k, 3) of all key points (eq. 5-6 in space)."""
