@@ -50,11 +50,8 @@ def _carried(
 ) -> np.ndarray:
     from scipy.spatial import cKDTree
 
-    cut = blend.cut
-    sequence, frame = graph.nodes[cut.source].sequence, cut.leave + 1 + position - cut.position
-    stands = cut.position - 1
-    if blend.backwards:
-        sequence, frame, stands = graph.nodes[cut.target].sequence, cut.enter + position - cut.position, cut.position
+    sequence, frame = blend.meshes[position]
+    stands = blend.cut.position - (not blend.backwards)
     vertices = performance.place(stands, np.asarray(mesh_of(sequence, frame)[0]))
     joints = performance.place(stands, joints_of(sequence, frame))
     near = cKDTree(vertices).query(joints, k=12)[1]

@@ -7,7 +7,8 @@ import pytest
 from scipy.spatial import cKDTree
 
 import tvmedit
-from resources.performer import body_capsules, body_joints, body_mesh, motion_pose
+from resources.performer import Part, body_capsules, body_joints, body_mesh, motion_pose, perform
+from tests.benchmarks.carried import worst_steps
 from tvmedit.cuts.landmarks import counterparts, limb_ends
 from tvmedit.cuts.registration import REFUSED_EDGES
 
@@ -74,3 +75,26 @@ def test_arms_far_from_their_goal_are_registered() -> None:
     assert found.residual < REFUSED_EDGES * EDGE
     moved = carried(source[0], found.between(1.0), before)
     assert np.linalg.norm(moved - after, axis=1).max() < 0.15
+
+
+@pytest.mark.slow
+def test_a_cut_out_of_a_rest_with_the_hands_on_the_hips_is_blended() -> None:
+    """Where a hand is grown together with the body, the other clip's mesh or a neighbour's is bent; nothing jumps."""
+    capture = perform([Part("squat", 3), Part("twist", 3)], fps=25, seed=21)
+    analysis = tvmedit.analyse(capture.meshes(), fps=25)
+    textons = [cluster.textons[1] for cluster in analysis.structure.clusters]
+    graph = tvmedit.motion_graph([analysis], textons=[(0, *texton) for texton in textons])
+    performance = tvmedit.compose(graph, [0, 1])
+    (cut,) = (joint for joint in performance.cuts if joint.kind == "cut")
+    blend = tvmedit.blend_cut(graph, performance, cut, lambda _, frame: capture.mesh(frame))
+    assert len(blend.shapes) >= 3
+    assert sorted(blend.meshes) == sorted(blend.shapes)
+    for position, (sequence, frame) in blend.meshes.items():
+        assert sequence == 0
+        vertices, faces, _ = capture.mesh(frame)
+        assert np.array_equal(blend.shapes[position].faces, faces)
+        assert blend.shapes[position].vertices.shape == vertices.shape
+    placed, blended = worst_steps(
+        graph, performance, lambda _, frame: capture.joints[frame], lambda _, frame: capture.mesh(frame), [blend]
+    )
+    assert blended < 0.5 * placed

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import attrs
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
+from tvmedit.cuts.landmarks import FREE_ENDS, limb_count
 from tvmedit.cuts.registration import Registration, register
 from tvmedit.cuts.seams import surface_step
 from tvmedit.features.frames import check_faces, check_vertices, upright
@@ -26,6 +27,10 @@ LONGER = 2.0
 """A blend lasts at most so many times as long as asked."""
 SPEED = 0.35
 """Body heights a second by which a blend may move the body on average; more makes it longer."""
+WAYS = ((False, False), (True, False), (False, True), (True, True))
+"""Whether to deform the mesh of the clip that is entered, and whether to free limbs first, in the order of trial."""
+REACH = 4
+"""So many frames away a mesh with free limbs is looked for."""
 FEWEST = 3
 """A blend of fewer good frames is refused."""
 
@@ -56,6 +61,8 @@ class Blend:
         Why it is refused, or why it is shorter than asked; empty otherwise.
     backwards : bool
         Whether the shapes are those of the clip that is entered, deformed back towards the one that is left.
+    meshes : dict of int to (int, int)
+        By position, sequence and frame of the mesh that was deformed.
     """
 
     cut: Cut
@@ -65,6 +72,7 @@ class Blend:
     residuals: dict[int, float]
     reason: str = ""
     backwards: bool = False
+    meshes: dict[int, tuple[int, int]] = attrs.field(factory=dict)
 
 
 def blend_cut(
@@ -82,7 +90,8 @@ def blend_cut(
     Around the cut both clips are there: the one that is left goes on beyond its last frame, the one entered begins
     before its first. Each of the window's frames is the first clip's mesh deformed towards the second's, by a share
     that rises smoothly; or the second's towards the first's, where only that is possible (a hand that lies on a hip
-    cannot be torn off, one that is free can be laid there). Registration starts at the cut, where the two are most
+    cannot be torn off, one that is free can be laid there). Where neither is, a neighbouring frame's mesh whose limbs
+    are free is bent onto each frame first. Registration starts at the cut, where the two are most
     alike, and runs outwards; frames where it fails end the window on that side. Colours pass from one clip's to the
     nearest ones of the other.
 
@@ -123,11 +132,11 @@ def blend_cut(
     reason = ""
     done = 0
 
-    def registered(k: int, start: Registration | None, backwards: bool) -> Registration | None:
+    def registered(k: int, start: Registration | None, way: tuple[bool, bool]) -> Registration | None:
         nonlocal reason, done
         report(min(done / (last - first + 1), 1.0))
         done += 1
-        source, target = reversed(pairs.shapes(k)) if backwards else pairs.shapes(k)
+        source, target = pairs.ends(k, *way)
         registration = register(
             (source.vertices, source.faces),
             (target.vertices, target.faces),
@@ -143,18 +152,18 @@ def blend_cut(
         found[k] = registration
         return registration
 
-    backwards = False
-    at_cut = registered(centre, None, backwards)
-    if at_cut is None:
-        backwards = True
-        at_cut = registered(centre, None, backwards)
+    at_cut = None
+    for way in WAYS:
+        at_cut = registered(centre, None, way)
+        if at_cut is not None:
+            break
     if at_cut is not None:
         reason = ""
         first, last = blend_window(graph, performance, cut, _needed(at_cut, seconds, pairs.height))
         for side in (range(centre + 1, last + 1), range(centre - 1, first - 1, -1)):
             start: Registration | None = at_cut
             for k in side:
-                start = registered(k, start, backwards)
+                start = registered(k, start, way)
                 if start is None:
                     break
     report(1.0)
@@ -162,9 +171,11 @@ def blend_cut(
     if len(found) < FEWEST:
         why = reason or "the two clips share too few frames around the cut"
         return Blend(cut, {}, before, before, tried, f"The cut is left as it is: {why}.")
-    shapes = _in_between(pairs, found, cut, backwards)
+    shapes = _in_between(pairs, found, cut, way)
     note = f"The blend is shorter than asked: {reason}." if reason else ""
-    return Blend(cut, shapes, before, _steps(pairs, shapes, cut, first, last), tried, note, backwards)
+    return Blend(
+        cut, shapes, before, _steps(pairs, shapes, cut, first, last), tried, note, way[0], pairs.taken(found, way)
+    )
 
 
 def _needed(at_cut: Registration, seconds: float, height: float) -> float:
@@ -204,10 +215,43 @@ class _Pairs:
         self.height = graph.analyses[self.source].height
         self.edge = max(graph.analyses[self.source].edge, graph.analyses[self.target].edge)
         self._known: dict[tuple[bool, int], Shape] = {}
+        self._free: dict[tuple[bool, int], tuple[Shape, int]] = {}
 
-    def shapes(self, k: int) -> tuple[Shape, Shape]:
-        """The clip that is left, going on, and the one entered."""
-        return self.earlier(k), self.later(k)
+    def ends(self, k: int, backwards: bool, freed: bool) -> tuple[Shape, Shape]:
+        """The mesh to deform and the one to reach: of the clip that is left, going on, and of the one entered."""
+        here, there = (self._freed(before, k)[0] if freed else self._shape(before, k) for before in (True, False))
+        return (there, here) if backwards else (here, there)
+
+    def taken(self, found: Iterable[int], way: tuple[bool, bool]) -> dict[int, tuple[int, int]]:
+        """Sequence and frame of the meshes that were deformed, by position."""
+        backwards, freed = way
+        sequence, frame = (self.target, self.cut.enter) if backwards else (self.source, self.cut.leave + 1)
+        shifts = {k: self._freed(not backwards, k)[1] if freed else 0 for k in found}
+        return {self.cut.position + k: (sequence, frame + k + shift) for k, shift in sorted(shifts.items())}
+
+    def _freed(self, before: bool, k: int) -> tuple[Shape, int]:
+        """A frame whose limbs hang free: itself, or the nearest frame's mesh bent onto it, and how far away that is."""
+        if (before, k) not in self._free:
+            self._free[before, k] = self._find_free(before, k)
+        return self._free[before, k]
+
+    def _find_free(self, before: bool, k: int) -> tuple[Shape, int]:
+        own = self._shape(before, k)
+        most, frame = (self.source, self.cut.leave + 1) if before else (self.target, self.cut.enter)
+        count = len(self.graph.analyses[most])
+        if limb_count(own.vertices, own.faces) == FREE_ENDS:
+            return own, 0
+        for shift in sorted(range(-REACH, REACH + 1), key=lambda shift: (abs(shift), shift)):
+            if shift == 0 or not 0 <= frame + k + shift < count:
+                continue
+            other = self._shape(before, k + shift)
+            if limb_count(other.vertices, other.faces) < FREE_ENDS:
+                continue
+            goal = (own.vertices, own.faces)
+            bent = register((other.vertices, other.faces), goal, height=self.height, edge=self.edge, iterations=14)
+            if not bent.reason:
+                return attrs.evolve(other, vertices=bent.between(1.0)), shift
+        return own, 0
 
     def earlier(self, k: int) -> Shape:
         """The clip that is left; its sequence may end at the cut."""
@@ -260,16 +304,15 @@ def _until_wrap(performance: Performance, cut: Cut) -> int:
     return count - 1
 
 
-def _in_between(pairs: _Pairs, found: dict[int, Registration], cut: Cut, backwards: bool) -> dict[int, Shape]:
+def _in_between(pairs: _Pairs, found: dict[int, Registration], cut: Cut, way: tuple[bool, bool]) -> dict[int, Shape]:
     """Shapes with shares rising smoothly over the good frames."""
     order = sorted(found)
     shapes = {}
     for rank, k in enumerate(order):
         x = (rank + 1) / (len(order) + 1)
         share = x * x * (3 - 2 * x)
-        source, target = pairs.shapes(k)
-        if backwards:
-            source, target, share = target, source, 1.0 - share
+        source, target = pairs.ends(k, *way)
+        share = 1.0 - share if way[0] else share
         vertices = found[k].between(share)
         colours = _mixed(found[k].between(1.0), source, target, share)
         shapes[cut.position + k] = Shape(vertices, source.faces, colours)

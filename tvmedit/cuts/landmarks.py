@@ -20,6 +20,8 @@ Faces = NDArray[np.int32]
 Counterparts = tuple[NDArray[np.int64], Array]
 """Vertices of one body, and where they are in the other."""
 MOST_ENDS, FEWEST_ENDS = 6, 4
+FREE_ENDS = 5
+"""A head and four limbs: more ends than that are no sign of more freedom."""
 SHORTEST = 0.45
 """Of the longest: limbs that reach less far from the middle are none."""
 AROUND = 0.3
@@ -30,7 +32,7 @@ STATIONS = np.array([0.25, 0.5, 0.75, 0.65])
 """Places along a limb, from its end (0) to the middle (1), that tell whose limb it is; the last is where it begins."""
 BEGINNINGS = 6.0
 """Weight of where limbs begin beside where they are: hips and shoulders keep their places on the trunk."""
-UNLIKE = 0.3
+UNLIKE = 0.45
 """Of the longest: bodies whose ends lie so much further from or nearer to each other, on average, are not the same."""
 CLEAR = 0.03
 """How much worse the next best way to match limbs must be, in squares of the longest; otherwise sides are not told."""
@@ -68,13 +70,18 @@ class Ends:
     middles: Array
 
 
-def limb_ends(vertices: Array, faces: Faces) -> Ends | None:
-    """Find the ends of a body's limbs, the furthest first; None where it hangs too little together or has none."""
+def limb_ends(vertices: Array, faces: Faces, *, around_hollows: bool = True) -> Ends | None:
+    """Find the ends of a body's limbs, the furthest first; None where it hangs too little together or has none.
+
+    Around hollows, where limbs that touch the body are one surface with it, or straight through them: truer for a body
+    whose limbs are free.
+    """
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import dijkstra
 
     offsets, neighbours, lengths = adjacency(vertices, faces)
-    lengths = lengths * _detour(vertices, faces, offsets, neighbours, lengths)
+    if around_hollows:
+        lengths = lengths * _detour(vertices, faces, offsets, neighbours, lengths)
     # Vertices that share a place would have edges of no length, which a sparse table takes for none.
     table = csr_matrix((np.maximum(lengths, 1e-12), neighbours, offsets), shape=(len(vertices),) * 2)
     middle = int(np.argmin(((vertices - vertices.mean(axis=0)) ** 2).sum(axis=1)))
@@ -103,6 +110,12 @@ def limb_ends(vertices: Array, faces: Faces) -> Ends | None:
     if not np.isfinite(middles).all():
         return None
     return Ends(distances, np.array(chosen), reach, middles)
+
+
+def limb_count(vertices: Array, faces: Faces) -> int:
+    """How many limbs of a body hang free; 0 where it has too few to tell."""
+    ends = limb_ends(vertices, faces, around_hollows=False)
+    return 0 if ends is None else min(len(ends.vertices), FREE_ENDS)
 
 
 def _detour(
@@ -152,12 +165,25 @@ def counterparts(source: tuple[Array, Faces], target: tuple[Array, Faces]) -> Co
         # One mesh that moves: every vertex is its own counterpart.
         same = _picked(len(source[0]))
         return same, target[0][same]
-    ours, theirs = limb_ends(*source), limb_ends(*target)
-    if ours is None or theirs is None:
-        return None
-    pairs = matched_ends(ours, theirs)
-    if pairs is None:
-        return None
+    for around in (False, True):
+        ours, theirs = (limb_ends(*mesh, around_hollows=around) for mesh in (source, target))
+        if ours is None or theirs is None:
+            continue
+        free = min(len(ours.vertices), len(theirs.vertices)) >= FREE_ENDS
+        pairs = matched_ends(ours, theirs) if free or around else None
+        if pairs is not None:
+            return _counterparts(source, target, ours, theirs, pairs)
+    return None
+
+
+def _counterparts(
+    source: tuple[Array, Faces],
+    target: tuple[Array, Faces],
+    ours: Ends,
+    theirs: Ends,
+    pairs: tuple[list[int], list[int]],
+) -> Counterparts:
+    """See ``counterparts``, with the ends matched."""
     mine, other = pairs
     scale = 0.5 * (ours.reach + theirs.reach)
     here, there = _picked(len(source[0])), _picked(len(target[0]))

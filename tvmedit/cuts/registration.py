@@ -33,6 +33,8 @@ ASTRAY_EDGES = 5.0
 """One that is not sure is refused if the way back leads 1 % of the body further astray than so many edge lengths."""
 TWISTED_EDGES = 8.0
 """The same for one that began with the limbs: what moved as far as an arm that is raised turns about itself besides."""
+SLID = 0.35
+"""Metres on a person: half of the body further away is another place, not another pose."""
 FEWEST_BACK = 14
 GUIDED = (10.0, 10.0, 6.0, 3.0, 2.0, 1.0, 0.5, 0.5)
 """Stiffness of the steps towards known places, before closest points are looked for."""
@@ -158,7 +160,7 @@ def _found_by_limbs(
     if there is None:
         return None
     found = _judged(_fitted(source, target, metre, iterations, None, TIGHT, there), target, edge)
-    if found.reason:
+    if found.reason or np.median(np.linalg.norm(found.between(1.0) - found.vertices, axis=1)) > SLID * metre:
         return None
     back = counterparts(target, source)
     if back is None:

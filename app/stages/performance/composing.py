@@ -56,7 +56,7 @@ def blended(document: Document) -> Stage:
     wanted = choice.blend and choice.align
     inputs = (order, sources, counts, wanted, choice.blend_seconds, choice.hard_cuts)
     stages = (graph(document), assembled(document), *itertools.chain.from_iterable(needs))
-    return Stage("blends", "Blending the cuts", _blended, inputs, stages, version=3, weight=10.0)
+    return Stage("blends", "Blending the cuts", _blended, inputs, stages, version=4, weight=10.0)
 
 
 def node_of(graph: Any, order: Sequence[str], motion: Motion) -> int:
