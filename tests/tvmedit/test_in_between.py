@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import tvmedit
 from resources.performer import body_capsules, body_joints, body_mesh, motion_pose
@@ -85,11 +86,16 @@ def test_half_way_is_the_pose_half_way(spread: Registration) -> None:
 
 
 def test_a_limb_far_on_its_way_is_caught_and_a_wrong_one_refused() -> None:
-    """An arm raised by a quarter period is found by looking further; legs of another stride stay refused."""
+    """An arm raised by a quarter period is found by looking further, legs of another stride by the limbs' ends."""
     arm = tvmedit.register(body("side bend", 0.05, 1), body("side bend", 0.25, 2), height=1.75, edge=0.024)
     assert not arm.reason
     assert arm.residual < 0.03
     legs = tvmedit.register(body("walk", 0.18, 3), body("walk", 0.99, 4), height=1.75, edge=0.024)
     crossed = tvmedit.register(body("march", 0.34, 5), body("kick", 0.3, 6), height=1.75, edge=0.024)
-    assert legs.reason
+    assert not legs.reason
+    before, after = (body_joints(motion_pose("walk", phase)) for phase in (0.18, 0.99))
+    near = cKDTree(legs.vertices).query(before, k=12)[1]
+    reached = before + (legs.between(1.0) - legs.vertices)[near].mean(axis=1)
+    assert np.linalg.norm(before - after, axis=1).max() > 0.5
+    assert np.linalg.norm(reached - after, axis=1).max() < 0.1
     assert crossed.reason
