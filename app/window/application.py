@@ -51,11 +51,14 @@ def make_application() -> QApplication:
     return application
 
 
-def load_slow_libraries() -> threading.Thread:
+def load_slow_libraries(viewport: Choice = "auto") -> threading.Thread:
     """Load in a thread what the first 3D picture and, a while later, what the first drag will need."""
+    from app.window.viewport import hosts
+
+    host = ("app.window.viewport.gl_host",) if hosts.choose(viewport) == "gl" else ()
 
     def load() -> None:
-        for names, pause in ((PICTURE, PAUSE), (SLOW, 0.0)):
+        for names, pause in (((*PICTURE[:1], *host, *PICTURE[1:]), PAUSE), (SLOW, 0.0)):
             for name in names:
                 with contextlib.suppress(ImportError):
                     importlib.import_module(name)
@@ -90,7 +93,7 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
     elif path is not None and not session.titled:
         shell.files.take(path)
     shell.care.offer_never_saved()
-    _after(load_slow_libraries)
+    _after(lambda: load_slow_libraries(viewport or settings.viewport()))
     return application.exec()
 
 

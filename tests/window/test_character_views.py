@@ -263,7 +263,7 @@ def test_before_there_is_a_character_one_is_asked_for(open_shell: Callable[[Sess
     assert empty.isVisible()
     assert empty.sentence.text() == "Choose a character mesh."
     assert empty.choose.isVisible()
-    assert not empty.tracks.isVisible()
+    assert not empty.more[-1].isVisible()
     QTest.keyClick(shell, Qt.Key.Key_Z, CONTROL)
     wait_for(lambda: shell.character.mesh.viewport is not None and len(view(shell).vertices))
     assert not empty.isVisible()

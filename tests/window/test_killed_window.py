@@ -24,7 +24,7 @@ from PySide6.QtWidgets import QApplication
 from app.window import application
 from app.window.shell import Shell
 
-application.load_slow_libraries = lambda: None
+application.load_slow_libraries = lambda viewport: None
 application.make_application()
 
 def the_shell():
