@@ -171,7 +171,8 @@ class Care(QObject):
         held = recovery.what_it_holds(work.document)
         self.notices.ask(
             "damaged",
-            f"{error} An autosave of {when_it_was(work)} lies beside it: {held}.",
+            f"{work.file.parent.stem} cannot be opened; why stands among the messages. "
+            f"An autosave of {when_it_was(work)} lies beside it: {held}.",
             ("Open the autosave as a copy", lambda: self._open_copy(work)),
             ("Later", lambda: None),
             level="error",
