@@ -158,3 +158,32 @@ def test_a_quick_picture_is_the_same(view: Viewport) -> None:
     whole, quick = pictures(faces[~towards])
     np.testing.assert_array_equal(whole, quick)
     assert (whole[whole.shape[0] // 2, whole.shape[1] // 2, 3]) == 255, "the inside is seen through the hole"
+
+
+def test_only_see_through_meshes_are_blended_in_any_order(view: Viewport) -> None:
+    """The lines of the ground look the same when they are blended as they are drawn, which is far cheaper."""
+    from app.window.viewport.streamed import StreamedMesh
+
+    renderer = view.scene.renderer
+    view.scene.set_ground((0.0, 0.0), 3.0, -0.6)
+
+    def picture() -> np.ndarray:
+        view.redraw()
+        settle(40)
+        image = view.grab().toImage()
+        return np.array([
+            [image.pixelColor(x, y).getRgb()[:3] for x in range(0, image.width(), 3)]
+            for y in range(image.height() // 2, image.height())
+        ])  # fmt: skip
+
+    assert not renderer.GetUseOIT()
+    cheap = picture()
+    assert np.ptp(cheap) > 30, "the ground is not seen"
+    renderer.SetUseOIT(True)
+    assert np.abs(picture() - cheap).max() <= 2
+    ghost = StreamedMesh(view.scene, "ghost", opacity=0.4)
+    renderer.SetUseOIT(False)
+    ghost.show(wall())
+    assert renderer.GetUseOIT()
+    ghost.hide()
+    assert not renderer.GetUseOIT()

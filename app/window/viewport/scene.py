@@ -55,6 +55,7 @@ class Scene:
         self.extent = np.array([[-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]])
         stage.render_window.SetMultiSamples(0)
         self.renderer.SetUseDepthPeeling(False)
+        self._blend()
         self.renderer.SetBackgroundAlpha(0.0)
         self.renderer.SetBackground(0.0, 0.0, 0.0)
         self._light()
@@ -207,7 +208,15 @@ class Scene:
         self._remove(name)
         self.renderer.AddActor(actor)
         self._actors[name] = actor
+        self._blend()
         actor.SetVisibility(self._shown.get(name, True))
+
+    def _blend(self) -> None:
+        """Blend in the order of drawing, which is right for the ground's thin lines, and which costs far less than to
+        blend in any order; a see-through mesh, whose triangles come as they come, needs the latter.
+        """
+        see_through = any(each.GetProperty().GetOpacity() < 1.0 for each in self._actors.values())
+        self.renderer.SetUseOIT(see_through)
 
     def put(self, name: str, actor: Any) -> None:
         """Add an actor made elsewhere under a name; one of that name is taken out."""
@@ -221,6 +230,7 @@ class Scene:
         actor = self._actors.pop(name, None)
         if actor is not None:
             self.renderer.RemoveActor(actor)
+            self._blend()
 
     def clear(self) -> None:
         """Take everything away, so that nothing outlives its render window."""
