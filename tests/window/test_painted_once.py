@@ -172,3 +172,36 @@ def test_ways_are_the_poses_of_their_frames(known: int) -> None:
         expected = np.full((3, 3), np.nan) if pose is None else pose[chosen]
         np.testing.assert_array_equal(found[frame], expected)
     assert np.isnan(motion.ways(0, 3, [9])).all()
+
+
+def test_what_a_project_needs_is_asked_when_something_has_changed(
+    shell: Shell, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The steps are the same in every frame; an edit may change them."""
+    from app.window.video import right_column
+
+    wait_for(lambda: not shell.project.progress)
+    turn()
+    asked: list[int] = []
+    find = right_column.steps
+    monkeypatch.setattr(right_column, "steps", lambda project: asked.append(1) or find(project))
+    for frame in (3, 4, 5):
+        shell.project.show_frame(frame)
+        wait_for(lambda frame=frame: shell.video.frame == frame)
+    assert not asked
+    shell.project.edit(tracks.delete_track, shell.project.document.tracks[0].id)
+    turn()
+    assert asked
+
+
+def test_layers_are_asked_for_when_their_menu_opens(calm: Shell, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether the background was measured is looked up for the menu, which says so, and not for every frame."""
+    scenery, asked = calm.character.scenery, []
+    known = type(scenery).known
+    monkeypatch.setattr(type(scenery), "known", lambda self: asked.append(1) or known(self))
+    calm.project.show_frame(11)
+    turn()
+    assert not asked
+    menu = calm.character.mesh.bar.layer_menu()
+    assert any("not measured yet" in action.text() for action in menu.actions())
+    menu.deleteLater()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QButtonGroup, QHBoxLayout, QMenu, QSizePolicy, QSlider, QToolButton, QWidget
@@ -63,7 +65,7 @@ class MeshHeader(QWidget):
         row.addWidget(self.opacity)
         row.addWidget(icon_button("fit", "Show everything", self.fitted.emit, "fit"))
         self.layers, self.over_film, self.following = Layers(), False, True
-        self.missing: dict[str, str] = {}
+        self.missing: Callable[[], Mapping[str, str]] = dict
         self.variants: list[str] = []
         self.heat = ""
 
@@ -99,11 +101,12 @@ class MeshHeader(QWidget):
         """The layers of the present look, each to be shown or hidden."""
         menu = self._menu()
         menu.addSection("Over the film" if self.over_film else "In space")
+        missing = self.missing()
         for name, text in LAYERS:
             if name in (SPACE_ONLY if self.over_film else FILM_ONLY):
                 continue
             on = self.layers.on(name, over_film=self.over_film)
-            action = self._entry(menu, text, on, self.missing.get(name, ""))
+            action = self._entry(menu, text, on, missing.get(name, ""))
             action.toggled.connect(lambda on, name=name: self.layer.emit(name, on))
         if not self.over_film:
             menu.addSeparator()

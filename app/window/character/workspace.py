@@ -110,6 +110,7 @@ class CharacterWorkspace(Workspace):
         self.placing = Placing(project, self.motion, self)
         self.checks, self.heating = Checks(project, self), Heating(project, self)
         self.comparing, self.scenery = Comparing(project, self), Scenery(project, self)
+        self.mesh.bar.missing = self.scenery.missing
         self.heating.choose(self.mesh.bar.heat)
         self.comparing.choose(self.mesh.bar.variants)
         self.events.tie(project)
@@ -123,6 +124,7 @@ class CharacterWorkspace(Workspace):
                 part.close()
         self.posing = self.placing = self.source = self.checks = self.heating = None
         self.comparing = self.scenery = self.project = None
+        self.mesh.bar.missing = dict
 
     def close_view(self) -> None:
         """Close the 3D view; it cannot be shown again."""
@@ -271,7 +273,6 @@ class CharacterWorkspace(Workspace):
             self.heating.want(self.frame, vertices)
         if self.scenery is not None:
             self.scenery.keep_up(self.mesh.bar.layers, over_film=self.mesh.bar.over_film)
-            self.mesh.bar.missing = self.scenery.missing()
         self._show_notes(character)
 
     def _show_world(self, vertices: NDArray[np.float64]) -> None:

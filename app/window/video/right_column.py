@@ -6,9 +6,12 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy
 
 from app.window.controls import Panel, button
 from app.window.fold_away import FoldAway
+from app.window.moment import Moment
+from app.window.project import Project
+from app.window.video import ground_edits
 from app.window.video.inspector import TrackInspector
 from app.window.video.scene_panel import ScenePanel
-from app.window.video.steps import StepList
+from app.window.video.steps import StepList, steps
 
 WIDTH = 304
 
@@ -18,6 +21,7 @@ class RightColumn(FoldAway):
 
     def __init__(self) -> None:
         super().__init__("video", "Point, and what this project needs", WIDTH)
+        self._needs: tuple[object, ...] = ()
         self.track_panel = Panel("Point")
         self.inspector = TrackInspector()
         self.track_panel.column.addWidget(self.inspector, 1)
@@ -48,6 +52,14 @@ class RightColumn(FoldAway):
             self.unfold()
         self.scene_panel.setVisible(scene)
         self.track_panel.setVisible(not scene)
+
+    def show_needs(self, project: Project, *, moved: bool) -> None:
+        """Show what the project needs; where one has only ``moved`` to another frame, only if something has changed."""
+        now = (Moment.of(project.session), project.character_id, project.track_id, tuple(project.progress.values()))
+        if not moved or now != self._needs:
+            self._needs = now
+            self.steps.show_steps(steps(project), brief=bool(project.track_id))
+            self.steps.show_fallbacks(ground_edits.lead(project), ground_edits.fallbacks(project))
 
     def show_proposals(self, count: int) -> None:
         """Show how many contacts are proposed."""

@@ -32,7 +32,6 @@ from app.window.video.picture_menu import picture_menu
 from app.window.video.point_windows import PointWindows, windows_of
 from app.window.video.proposals import ContactProposals
 from app.window.video.right_column import RightColumn
-from app.window.video.steps import steps
 from app.window.video.tool_strip import ToolStrip
 from app.window.video.tools import HINTS, LAYERS, NARROW, Tool, gesture_for
 from app.window.workspaces import Workspace
@@ -169,7 +168,7 @@ class VideoWorkspace(Workspace):
             self.shown.mask_part = ""
         self.frame = frame
         self.canvas.show_picture(picture)
-        self.refresh()
+        self.refresh(moved=True)
 
     def document_changed(self, before: Document, after: Document) -> None:
         """Keep the old paths of tracks that have to be solved again, then show what there is."""
@@ -192,8 +191,8 @@ class VideoWorkspace(Workspace):
             if each.toolButtonStyle() != style:
                 each.setToolButtonStyle(style)
 
-    def refresh(self) -> None:
-        """Show the project as it is; nothing is read for a page that nobody sees."""
+    def refresh(self, *, moved: bool = False) -> None:
+        """Show the project as it is, or what another frame changes; nothing is read for a page that nobody sees."""
         project, reading = self.project, self.reading
         if project is None or reading is None or not self.looked_at():
             return
@@ -215,8 +214,7 @@ class VideoWorkspace(Workspace):
         self.inspector.show_track(project, known, frame)
         self.inspector.show_points([(each, reading.track(each)) for each in project.document.tracks])
         self.right.show_proposals(self.proposals.count(project))
-        self.steps.show_steps(steps(project), brief=bool(project.track_id))
-        self.steps.show_fallbacks(ground_edits.lead(project), ground_edits.fallbacks(project))
+        self.right.show_needs(project, moved=moved)
         self.canvas.update()
 
     def _show_background(self) -> None:
