@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QMenu, QProgressBar, QToolButton, QWidget
 
 from app.window import icons, settings
@@ -13,6 +14,8 @@ from app.window.project import Project
 
 MENU_TOO = ("history", "log", "light", "keys", "settings")
 """Commands of other groups that are in the menu as well."""
+NARROW = 1120
+"""Pixels of width below which the program's mark stands without its name."""
 SEPARATED = ("save", "add_clip", "history", "export")
 """Commands above which the menu has a line."""
 
@@ -54,7 +57,8 @@ class TopBar(QWidget):
         self.name = NameField()
         self.state = Elided("", "caption")
         row.addWidget(mark)
-        row.addWidget(label("Motionwright", "brand"))
+        self.brand = label("Motionwright", "brand")
+        row.addWidget(self.brand)
         row.addWidget(self.menu_button)
         row.addWidget(self.name)
         row.addWidget(self.state, 1)
@@ -135,6 +139,11 @@ class TopBar(QWidget):
         set_tooltip(self.export, "Meshes, video and cameras for other programs", "export")
         row.addWidget(self.export)
         return row
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """In a narrow window the name of the project and its state come before that of the program."""
+        super().resizeEvent(event)
+        self.brand.setVisible(self.width() >= NARROW)
 
     def show_workspace(self, name: str) -> None:
         """Mark the tab of the workspace shown."""

@@ -111,3 +111,5 @@ def test_a_small_screen_has_room_for_the_window(shell: Shell) -> None:
     settle(100)
     assert shell.video.canvas.width() > 680
     assert shell.video.canvas.height() > 380
+    state = shell.bar.state
+    assert state.fontMetrics().horizontalAdvance(state.text()) <= state.width(), "whether it is saved can be read"
