@@ -24,6 +24,7 @@ from imitation.geometry.projection import Array, Camera
 SOURCES = 10  # key frames whose depth is brought to a frame
 DONORS = 28  # frames whose colours are looked at, near ones first
 APART = 6  # frames: from nearer ones what lies in the subject's shadow is not taken, it is there in them too
+SAME = 0.3  # steps of the search: more, and where near is a hundred times as near as far, all that is far is one
 NEAREST = 8  # of them that see a place give its colour
 GROUND = 480  # pixels on the longest side at which depth under a shadow is brought over: shadows are soft
 KEPT = 4  # depths of other frames that stay in memory
@@ -89,7 +90,7 @@ class Background:
         self._inverse: dict[tuple[int, int, tuple[int, int]], NDArray[np.float32]] = {}
         middle = float(np.nanmedian(self.maps[len(self.maps) // 2].depth))
         self._speed = speeds(cameras, range(len(cameras)), self.pictures.size, middle)
-        self.tolerance = 1.5 * self.maps[0].tolerance / middle
+        self.tolerance = SAME * self.maps[0].tolerance / middle
         """Difference of inverse depths that counts as the same surface."""
 
     def depth(self, frame: int) -> DepthMap:
