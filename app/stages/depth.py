@@ -195,7 +195,7 @@ def _solver(
 
     frames = context.media.frames(clip)
     if plan_ is None:
-        return DepthSolver(frames, cameras, masks, longest=width)
+        return DepthSolver(frames, cameras, masks, longest=width, progress=context.progress)
     reach = Range(plan_.near, plan_.far, plan_.middle)
     solver: DepthSolver = context.media.depth_solver(
         (clip.media.fingerprint, id(cameras), id(masks), width, reach),

@@ -13,6 +13,7 @@ from imitation.cameras.features import find_features, match
 from imitation.cameras.path import CameraPath
 from imitation.errors import InputError, NoSolution
 from imitation.geometry.projection import Array
+from imitation.progress import Progress, silent
 
 INSTEAD = "lay a plane through selected points or assume a constant depth instead"
 VERDICTS = {
@@ -88,7 +89,9 @@ class Range:
     middle: float
 
 
-def find_range(frames: Sequence[Any], cameras: CameraPath, masks: Sequence[Any] | None) -> Range:
+def find_range(
+    frames: Sequence[Any], cameras: CameraPath, masks: Sequence[Any] | None, progress: Progress = silent
+) -> Range:
     """The range of background depths, from the cameras' points or from features triangulated here.
 
     Raises
@@ -98,7 +101,7 @@ def find_range(frames: Sequence[Any], cameras: CameraPath, masks: Sequence[Any] 
     NoSolution
         The background hardly moves against the camera: no parallax, or a scene at infinity.
     """
-    found = _triangulated(frames, cameras, masks)
+    found = _triangulated(frames, cameras, masks, progress)
     depths = _seen_depths(cameras, np.shape(frames[0])) if len(cameras.points) >= 50 else found
     if len(depths) < 12:
         raise NoSolution(f"Too few background points show parallax for depth to be searched: {INSTEAD}.")
@@ -154,13 +157,18 @@ def _pairs(cameras: CameraPath) -> list[tuple[int, int]]:
     return pairs
 
 
-def _triangulated(frames: Sequence[Any], cameras: CameraPath, masks: Sequence[Any] | None) -> Array:
+def _triangulated(frames: Sequence[Any], cameras: CameraPath, masks: Sequence[Any] | None, progress: Progress) -> Array:
     """Depths (k,) of matched features; refuses cameras that they contradict and scenes that they show at infinity."""
     clip = Clip.of(frames, masks)
     tolerance = WITHIN / 960 * max(clip.size)
     depths, fitting, total, shifts = [], 0, 0, []
-    for first, second in _pairs(cameras):
-        a, b = find_features(clip, first), find_features(clip, second)
+    chosen = _pairs(cameras)
+    for number, (first, second) in enumerate(chosen):
+        progress(number / len(chosen))
+        a = find_features(clip, first)
+        progress((number + 0.4) / len(chosen))
+        b = find_features(clip, second)
+        progress((number + 0.8) / len(chosen))
         pairs = match(a, b)
         if len(pairs) < 12:
             continue

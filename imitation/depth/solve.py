@@ -65,6 +65,7 @@ class DepthSolver:
     longest : working size, pixels on the longest side.
     reach : depths to search; found here where None.
     planes : how many depths are tried, evenly spaced in inverse depth.
+    progress : of finding the range; may raise ``Cancelled``.
     """
 
     def __init__(
@@ -76,10 +77,11 @@ class DepthSolver:
         longest: int = LONGEST,
         reach: Range | None = None,
         planes: int | None = None,
+        progress: Progress = silent,
     ) -> None:
         check_input(frames, cameras, masks)
         self.pictures = Pictures(frames, cameras, masks, longest)
-        self.reach = reach or find_range(frames, cameras, masks)
+        self.reach = reach or find_range(frames, cameras, masks, progress)
         count = planes or (PLANES_LARGE if max(self.pictures.size) > LARGE else PLANES)
         self._count = count
         self.sigma = 1.0 * max(1.0, max(self.pictures.size) / 480)
@@ -187,9 +189,12 @@ class DepthSolver:
         if known:
             nothing = np.zeros(pictures.size[::-1], np.float32)
             prior = np.stack([known[v].measured if v in known else nothing for v in views])
-        planes = self.planes(frame)
+        planes, signals = self.planes(frame), []
+        for view in views:
+            progress(0.0)  # reading a frame takes a moment: a pass that is no longer wanted ends between two
+            signals.append(pictures.signal(view))
         volume = sweep(
-            pictures.signal(frame), pictures.hidden(frame), np.stack([pictures.signal(v) for v in views]),
+            pictures.signal(frame), pictures.hidden(frame), np.stack(signals),
             geometry(pose(frame), [pose(v) for v in views]), planes, prior, self.sigma, part(progress, 0.0, 0.75),
         )  # fmt: skip
         untold = volume == NEUTRAL

@@ -111,6 +111,22 @@ def test_a_pass_looks_up_whether_to_stop_many_times() -> None:
     assert calls > 3
 
 
+def test_finding_the_range_can_be_stopped() -> None:
+    """The frames that are matched for it are told one by one, and what stops it stops it there."""
+    world = filmed_room(4, (160, 90), 12)
+    seen: list[float] = []
+    DepthSolver(world.frames, world.cameras, world.masks, progress=seen.append)
+    assert seen == sorted(seen)
+    assert len(set(seen)) >= 6
+
+    def stopping(fraction: float) -> None:
+        if fraction > 0.3:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        DepthSolver(world.frames, world.cameras, world.masks, progress=stopping)
+
+
 def test_a_stage_gives_what_the_engine_gives_and_the_world_scales_it() -> None:
     """Depth in the cameras' units, a plate from it, and both in a world of twice the size."""
     world = filmed_room(4, (160, 90), 12)
