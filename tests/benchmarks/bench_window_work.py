@@ -206,6 +206,28 @@ def test_cancel_while_scrubbing(bench: Recorder, hand: Hand) -> None:
         bench.record(f"window: cancelled, {size}", time.perf_counter() - moment, asked=0.1, unit="s", note=note)
 
 
+def test_scrubbing(bench: Recorder, hand: Hand) -> None:
+    """Frames whose pictures are in memory, one after the other with nothing under way: film, pose, marks and lanes."""
+    shell, spent = hand.shell, []
+    wait_for(lambda: not shell.character.checks.measuring, 120)
+    for frame in (125, 130, 135, 140, 130, 120):
+        shell.project.show_frame(frame)
+        settle(300)
+    for _ in range(3):
+        for frame in (*range(121, 141), *range(139, 119, -1)):
+            began = time.thread_time()
+            shell.project.show_frame(frame)
+            for _ in range(4):
+                QApplication.processEvents()
+            spent.append(1e3 * (time.thread_time() - began))
+    bench.record(
+        f"window: a frame shown beside its character, {len(hand.view.vertices):,} vertices",
+        float(np.median(spent)),
+        unit="ms CPU",
+        note=f"the window's own thread; {load()}",
+    )
+
+
 def test_correction(bench: Recorder, qapp: QApplication, private_places: None) -> None:
     """The built-in sample: a click between two spans of 50 and 30 frames is moved; until the new path is there."""
     from app.window.sample import sample_session
