@@ -135,7 +135,7 @@ def shape_animation(gltf: Gltf) -> MeshSequence:
             colors = to_srgb(gltf.accessor(primitive["attributes"]["COLOR_0"])[:, :3])
     except InputError:
         raise
-    except (ValueError, KeyError, IndexError, TypeError, StopIteration) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, StopIteration) as error:
         raise InputError(f"The file {gltf.name} is not a whole GLB or glTF file: export it again.") from error
     stated = gltf.tree["asset"].get("extras", {})
     fps = stated.get("fps") if isinstance(stated, dict) else None

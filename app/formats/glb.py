@@ -34,7 +34,7 @@ def glb_mesh(gltf: Gltf, name: str) -> MeshFile:
     """All surfaces of a scene one after another as one mesh, turned to Z up."""
     try:
         pieces = surfaces(gltf)
-    except (ValueError, KeyError, IndexError, TypeError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         raise InputError(f"The file {name} is not a whole GLB or glTF file: export it again.") from error
     if not pieces:
         return MeshFile(np.zeros((0, 3)), np.zeros((0, 3)), None, "z", name)

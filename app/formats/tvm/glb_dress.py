@@ -54,7 +54,7 @@ def glb_texture(gltf: Gltf, path: Path, room: PictureRoom) -> Texture | None:
     """
     try:
         return _texture(gltf, path, room)
-    except (ValueError, KeyError, IndexError, TypeError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, MemoryError) as error:
         raise InputError(f"The file {path.name} has textures that cannot be understood: export it again.") from error
 
 

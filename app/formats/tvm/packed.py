@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+import tokenize
 import zipfile
 from fractions import Fraction
 from pathlib import Path
@@ -17,6 +18,8 @@ from app.formats.tvm.frames import FrameMesh, MeshFrames
 from imitation.errors import InputError
 
 SMALL = 1 << 16
+DAMAGE = (OSError, ValueError, KeyError, IndexError, TypeError, AttributeError, ZeroDivisionError, OverflowError)
+"""What reading a damaged archive comes to."""
 LARGEST = 1 << 38
 """Bytes that one array may have when it is unpacked."""
 
@@ -41,7 +44,7 @@ class PackedFrames(MeshFrames):
         except InputError:
             self._room.cleanup()
             raise
-        except (OSError, ValueError, KeyError, TypeError, ZeroDivisionError, OverflowError) as error:
+        except DAMAGE as error:
             self._room.cleanup()
             raise InputError(
                 f"The file {path.name} is not an npz of vertices (or positions) and faces: export it again."
@@ -163,7 +166,11 @@ def _unpacked(path: Path, room: Path) -> dict[str, Any]:
 def _array(stream: IO[bytes], entry: zipfile.ZipInfo, target: Path) -> NDArray[Any]:
     version = np.lib.format.read_magic(stream)
     read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
-    shape, fortran, dtype = read(stream)
+    try:
+        shape, fortran, dtype = read(stream)
+    except (SyntaxError, tokenize.TokenError, RecursionError, MemoryError) as error:
+        # The header is a line of Python, which numpy reads with a tokenizer.
+        raise ValueError("header") from error
     if dtype.hasobject or (fortran and len(shape) > 1) or any(length < 0 for length in shape):
         raise ValueError("kind of array")
     size = dtype.itemsize

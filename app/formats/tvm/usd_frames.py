@@ -90,27 +90,31 @@ class UsdFrames(MeshFrames):
         self._pxr = usd_library()
         self.name = path.name
         try:
-            self._stage = self._pxr.Usd.Stage.Open(str(path))
+            self._open(str(path))
         except self._pxr.Tf.ErrorException as error:
             raise InputError(f"The file {path.name} is not a USD stage that can be read.") from error
+
+    def _open(self, path: str) -> None:
+        self._stage = self._pxr.Usd.Stage.Open(path)
         prims = [prim for prim in self._stage.Traverse() if prim.IsA(self._pxr.UsdGeom.Mesh)]
         if not prims:
-            raise InputError(f"The USD stage {path.name} holds no mesh.")
+            raise InputError(f"The USD stage {self.name} holds no mesh.")
         if len(prims) > 1:
-            self.remark = f"{path.name} holds {len(prims)} meshes: {prims[0].GetName()} is taken."
+            self.remark = f"{self.name} holds {len(prims)} meshes: {prims[0].GetName()} is taken."
         self._prim, self._mesh = prims[0], self._pxr.UsdGeom.Mesh(prims[0])
         self._samples = self._mesh.GetPointsAttr().GetTimeSamples()
         if len(self._samples) < 2:
-            raise InputError(f"The file {path.name} holds one frame only: a sequence needs at least two.")
+            raise InputError(f"The file {self.name} holds one frame only: a sequence needs at least two.")
         # Where faces are no time samples, or one only, all frames share them.
         self.moving = len(self._mesh.GetFaceVertexIndicesAttr().GetTimeSamples()) < 2
         rate = self._stage.GetTimeCodesPerSecond()
         step = float(np.median(np.diff(self._samples)))
         if not 0 < rate / step <= 1000:
-            raise InputError(f"The USD stage {path.name} has no frame rate that can be: export it again.")
+            raise InputError(f"The USD stage {self.name} has no frame rate that can be: export it again.")
         self.fps = Fraction(rate / step).limit_denominator(1001)
         stated = self._pxr.UsdGeom.StageHasAuthoredMetersPerUnit(self._stage)
-        self.unit = (float(self._pxr.UsdGeom.GetStageMetersPerUnit(self._stage)) if stated else 0.0) or None
+        unit = float(self._pxr.UsdGeom.GetStageMetersPerUnit(self._stage)) if stated else 0.0
+        self.unit = unit if 0.0 < unit < np.inf else None
         self._turned = self._pxr.UsdGeom.GetStageUpAxis(self._stage) == self._pxr.UsdGeom.Tokens.y
 
     def __len__(self) -> int:
@@ -130,7 +134,7 @@ class UsdFrames(MeshFrames):
                 faces = corners.reshape(-1, 3)
             else:
                 faces = fan([part.tolist() for part in np.split(corners, np.cumsum(counts)[:-1])])
-        except (ValueError, TypeError, IndexError) as error:
+        except (ValueError, TypeError, IndexError, self._pxr.Tf.ErrorException) as error:
             raise InputError(f"Frame {frame} of {self.name} is no whole mesh: export it again.") from error
         vertices = y_up_to_z_up(vertices) if self._turned else vertices
         colours = self._colours(at, len(vertices))
@@ -138,6 +142,13 @@ class UsdFrames(MeshFrames):
         return FrameMesh(mesh.vertices, mesh.faces, mesh.colors)
 
     def _colours(self, at: float, count: int) -> NDArray[np.uint8] | None:
+        # Colours that cannot be read are no reason to refuse the surface.
+        try:
+            return self._painted(at, count)
+        except (self._pxr.Tf.ErrorException, ValueError, TypeError):
+            return None
+
+    def _painted(self, at: float, count: int) -> NDArray[np.uint8] | None:
         painted = self._mesh.GetDisplayColorPrimvar()
         if not painted or painted.GetInterpolation() != self._pxr.UsdGeom.Tokens.vertex:
             return None

@@ -1,0 +1,98 @@
+"""Damaged sequences are refused in one sentence, whatever part of them is spoilt."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import struct
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.formats.tvm import FrameMesh, open_mesh_frames, write_mesh_frames
+from imitation.errors import InputError
+
+MESH = FrameMesh(
+    np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], np.float64),
+    np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]], np.int32),
+    np.full((4, 3), 90, np.uint8),
+)
+
+
+def respelt(path: Path, change: Callable[[dict[str, Any]], None]) -> None:
+    """Change a GLB's JSON part, with the container right around it."""
+    data = path.read_bytes()
+    size = struct.unpack("<I", data[12:16])[0]
+    tree = json.loads(data[20 : 20 + size])
+    change(tree)
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    rest = data[20 + size :]
+    path.write_bytes(data[:8] + struct.pack("<II", 20 + len(text) + len(rest), len(text)) + data[16:20] + text + rest)
+
+
+@pytest.mark.parametrize(
+    "place",
+    [
+        ("materials", 0),
+        ("materials", 0, "pbrMetallicRoughness"),
+        ("meshes", 0, "primitives", 0),
+        ("meshes", 0, "primitives", 0, "attributes"),
+        ("accessors", 0),
+        ("bufferViews", 0),
+        ("nodes", 0),
+    ],
+)
+@pytest.mark.parametrize("value", [None, 1.5, "x", [], True])
+def test_a_glb_with_something_else_where_a_table_should_be(place: tuple[Any, ...], value: Any, tmp_path: Path) -> None:
+    """No message of Python's reaches the user; what does not matter to the surface may be read over."""
+    write_mesh_frames(tmp_path / "film", [MESH, MESH], form="glb", fps=25, count=2)
+
+    def spoil(tree: dict[str, Any]) -> None:
+        at: Any = tree
+        for key in place[:-1]:
+            at = at[key]
+        at[place[-1]] = value
+
+    for path in sorted((tmp_path / "film").iterdir()):
+        respelt(path, spoil)
+    # Anything but a refusal in our own words, or the whole surface, fails here.
+    with contextlib.suppress(InputError), open_mesh_frames(tmp_path / "film") as frames:
+        assert len(frames[1].vertices) == 4
+
+
+@pytest.mark.parametrize("header", [b"{'descr': ('<f4', 'fortran_order': False\n", b"(((((\n", b"{}\n"])
+def test_an_npz_whose_headers_are_no_python(header: bytes, tmp_path: Path) -> None:
+    """What numpy says of headers it cannot parse does not reach the user."""
+    array = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        archive.writestr("vertices.npy", array)
+        archive.writestr("faces.npy", array)
+    (tmp_path / "film.npz").write_bytes(packed.getvalue())
+    with pytest.raises(InputError, match="not an npz of vertices"):
+        open_mesh_frames(tmp_path / "film.npz")
+
+
+def test_an_npz_of_no_rates(tmp_path: Path) -> None:
+    """A rate without a value."""
+    places = np.zeros((2, 4, 3), np.float32) + MESH.vertices
+    np.savez(tmp_path / "film.npz", vertices=places, faces=MESH.faces, fps=np.zeros(0))
+    with pytest.raises(InputError, match="not an npz of vertices"):
+        open_mesh_frames(tmp_path / "film.npz")
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9, 0.99])
+def test_a_truncated_usd_stage(share: float, tmp_path: Path) -> None:
+    """The library's own exceptions do not reach the user."""
+    pytest.importorskip("pxr")
+    write_mesh_frames(tmp_path / "film.usdc", [MESH, MESH], form="usd", fps=25, count=2)
+    data = (tmp_path / "film.usdc").read_bytes()
+    (tmp_path / "film.usdc").write_bytes(data[: int(share * len(data))])
+    with pytest.raises(InputError):
+        open_mesh_frames(tmp_path / "film.usdc")
