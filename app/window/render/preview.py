@@ -20,12 +20,12 @@ from app.window.project import Project
 LACKING = {
     "motion": ("The motion is not solved yet: rendering solves it first.", "Solve the motion", "propagate"),
     "some motion": (
-        "Motions that are not solved yet are left out; rendering solves them.",
+        "Motions that are not solved yet are left out; rendering solves them first.",
         "Solve the motion",
         "propagate",
     ),
     "comparison": (
-        "What is not computed yet is left out; rendering computes it.",
+        "What is not computed yet is left out; rendering computes it first.",
         "Compute them now",
         "comparisons",
     ),
