@@ -215,6 +215,7 @@ class _Pairs:
         self.height = graph.analyses[self.source].height
         self.edge = max(graph.analyses[self.source].edge, graph.analyses[self.target].edge)
         self._known: dict[tuple[bool, int], Shape] = {}
+        self._counts: dict[tuple[bool, int], int] = {}
         self._free: dict[tuple[bool, int], tuple[Shape, int]] = {}
 
     def ends(self, k: int, backwards: bool, freed: bool) -> tuple[Shape, Shape]:
@@ -235,18 +236,24 @@ class _Pairs:
             self._free[before, k] = self._find_free(before, k)
         return self._free[before, k]
 
+    def _hangs_free(self, before: bool, k: int) -> bool:
+        if (before, k) not in self._counts:
+            shape = self._shape(before, k)
+            self._counts[before, k] = limb_count(shape.vertices, shape.faces)
+        return self._counts[before, k] >= FREE_ENDS
+
     def _find_free(self, before: bool, k: int) -> tuple[Shape, int]:
         own = self._shape(before, k)
         most, frame = (self.source, self.cut.leave + 1) if before else (self.target, self.cut.enter)
         count = len(self.graph.analyses[most])
-        if limb_count(own.vertices, own.faces) == FREE_ENDS:
+        if self._hangs_free(before, k):
             return own, 0
         for shift in sorted(range(-REACH, REACH + 1), key=lambda shift: (abs(shift), shift)):
             if shift == 0 or not 0 <= frame + k + shift < count:
                 continue
-            other = self._shape(before, k + shift)
-            if limb_count(other.vertices, other.faces) < FREE_ENDS:
+            if not self._hangs_free(before, k + shift):
                 continue
+            other = self._shape(before, k + shift)
             goal = (own.vertices, own.faces)
             bent = register((other.vertices, other.faces), goal, height=self.height, edge=self.edge, iterations=14)
             if not bent.reason:
