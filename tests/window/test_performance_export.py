@@ -111,13 +111,16 @@ def test_the_path_alone_is_written_and_taken_again(composed: Shell, tmp_path: Pa
     quiet(composed)
 
 
-def test_an_npz_gets_its_ending(composed: Shell, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("form", "ending"), [("npz", ".npz"), ("usd", ".usd")])
+def test_one_file_gets_its_ending(composed: Shell, tmp_path: Path, form: str, ending: str) -> None:
     """The ending follows the form, whatever was typed before."""
+    if form == "usd":
+        pytest.importorskip("pxr")
     dialog = ask(composed)
-    choose(dialog, "npz")
+    choose(dialog, form)
     place(dialog, tmp_path / "made")
     finished(dialog)
-    frames = open_mesh_frames(tmp_path / "made.npz")
+    frames = open_mesh_frames(tmp_path / f"made{ending}")
     assert len(frames) == composed.pages.in_sight.state.frame_count
     frames.close()
 

@@ -34,6 +34,7 @@ FORMS = (
     ("glb", "GLB, one file a frame", ""),
     ("npz", "NumPy, one file", ".npz"),
     ("animation", "One animated GLB", ".glb"),
+    ("usd", "Universal Scene Description, one file", ".usd"),
     ("film", "Film, mp4", ".mp4"),
     ("path", "The path only: what was composed, and how", ".json"),
 )
