@@ -336,7 +336,8 @@ def _judged(found: Registration, target: tuple[Array, Faces], edge: float) -> Re
     volume = mesh_volume(found.between(0.5), found.faces) / ends if ends > 0 else float("nan")
     reason = ""
     if not residual <= REFUSED_EDGES * edge:
-        reason = f"part of the body has no counterpart: 1 % of it lies over {residual:.3g} away"
+        edges = residual / max(edge, 1e-12)
+        reason = f"part of the body has no counterpart: 1 % of it is more than {edges:.1f} triangle edges away"
     elif not VOLUMES[0] <= volume <= VOLUMES[1]:
         reason = f"the shape half-way would have {volume:.2f} of the body's volume"
     return attrs.evolve(found, residual=residual, volume=volume, reason=reason)
