@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from PySide6.QtCore import QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QKeyEvent
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.window.controls import icon_button
+from app.window.controls import Chooser, icon_button
 
 
 class NameChooser(QWidget):
@@ -19,9 +19,8 @@ class NameChooser(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self.chooser = QComboBox()
-        self.chooser.setAccessibleName("Character")
-        self.chooser.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
+        self.chooser = Chooser(name="Character")
+        self.chooser.setInsertPolicy(Chooser.InsertPolicy.NoInsert)
         self.rename = icon_button("rename", "Rename the character", self.begin)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout
+from PySide6.QtWidgets import QHBoxLayout
 
 from app.model.character import Alignment, Character
 from app.model.edits import characters
-from app.window.controls import Fold, NumberField, NumberRange, Row, button, toggle
+from app.window.controls import Chooser, Fold, NumberField, NumberRange, Row, button, toggle
 from app.window.project import Project
 
 SCALE = NumberRange(0.01, 100.0, 0.005, 3, "×", 1.0)
@@ -49,14 +49,10 @@ class PlaceSection(Fold):
         self.column.addWidget(Row("Scale", self.scale))
         self.column.addWidget(Row("Rotation", *self.turn))
         self.column.addWidget(Row("Shift", *self.shift))
-        self.up = QComboBox()
-        self.up.setAccessibleName("Axis of the mesh file that points up")
-        self.up.addItems(["X up", "Y up", "Z up"])
+        self.up = Chooser(("X up", "Y up", "Z up"), "Axis of the mesh file that points up")
         self.up.activated.connect(lambda index: self._align(up="xyz"[index]))
         self.column.addWidget(Row("Mesh file", self.up))
-        self.by = QComboBox()
-        self.by.setAccessibleName("Where the character stands")
-        self.by.addItems(["where its pairs fit", "where I put it"])
+        self.by = Chooser(("where its pairs fit", "where I put it"), "Where the character stands")
         self.by.activated.connect(lambda index: self.hand_wanted.emit(index == 1))
         self.column.addWidget(Row("Stands", self.by))
         self.reset = button("Reset the place", self.reset_wanted.emit, name="reset")
