@@ -18,8 +18,9 @@ from imitation.errors import InputError
 class PerformanceFrames(Sequence[FrameMesh]):
     """Meshes of a performance, z up and in metres, placed; from a blend where there is one.
 
-    Blended frames have the topology of the clip that is left and colours a vertex, passed over from one clip's to the
-    nearest ones of the other; all others are as captured, with their colours and pictures.
+    Blended frames have the topology of the clip that is left, or of the one that is entered where only that blends
+    well, and colours a vertex, passed over from one clip's to the nearest ones of the other; all others are as
+    captured, with their colours and pictures.
 
     Attributes
     ----------
