@@ -22,17 +22,7 @@ def write_usd(path: Path, sequence: MeshSequence, progress: Progress | None = No
     """Write a sequence as a USD stage: Z up, metres, one time code a frame from 0, fps time codes a second."""
     pxr = usd_library()
     report = progress or silent
-    stage = pxr.Usd.Stage.CreateInMemory(path.name)
-    pxr.UsdGeom.SetStageUpAxis(stage, pxr.UsdGeom.Tokens.z)
-    pxr.UsdGeom.SetStageMetersPerUnit(stage, 1.0)
-    stage.SetTimeCodesPerSecond(float(sequence.fps))
-    stage.SetFramesPerSecond(float(sequence.fps))
-    stage.SetStartTimeCode(0)
-    stage.SetEndTimeCode(len(sequence) - 1)
-    root = pxr.UsdGeom.Xform.Define(stage, "/World")
-    stage.SetDefaultPrim(root.GetPrim())
-    mesh = pxr.UsdGeom.Mesh.Define(stage, "/World/" + pxr.Tf.MakeValidIdentifier(sequence.name))
-    mesh.CreateSubdivisionSchemeAttr(pxr.UsdGeom.Tokens.none)
+    stage, mesh = begin_stage(path.name, sequence.name, sequence.fps, len(sequence))
     mesh.CreateFaceVertexCountsAttr(pxr.Vt.IntArray.FromNumpy(np.full(len(sequence.faces), 3, np.int32)))
     mesh.CreateFaceVertexIndicesAttr(pxr.Vt.IntArray.FromNumpy(sequence.faces.reshape(-1)))
     points, extent = mesh.CreatePointsAttr(), mesh.CreateExtentAttr()
@@ -45,13 +35,7 @@ def write_usd(path: Path, sequence: MeshSequence, progress: Progress | None = No
         colors = mesh.CreateDisplayColorPrimvar(pxr.UsdGeom.Tokens.vertex)
         linear = np.ascontiguousarray(to_linear(sequence.colors) / np.float32(65535), np.float32)
         colors.Set(pxr.Vt.Vec3fArray.FromNumpy(linear))
-    try:
-        exported = stage.GetRootLayer().Export(str(path))
-    except pxr.Tf.ErrorException as error:
-        full = "No space left" in str(error) or "File too large" in str(error)
-        raise OSError(errno.ENOSPC if full else errno.EIO, "the USD library failed") from error
-    if not exported:
-        raise OSError(errno.EIO, "the USD library failed")
+    export_stage(stage, path)
     report(1.0)
 
 
@@ -90,6 +74,35 @@ def read_usd(path: Path) -> MeshSequence:
         colors = to_srgb(np.asarray(painted.Get()))
     fps = Fraction(stage.GetTimeCodesPerSecond()).limit_denominator(1001)
     return mesh_sequence(vertices, to_int32(corners.reshape(-1, 3), path.name), fps, colors, prims[0].GetName())
+
+
+def begin_stage(title: str, name: str, fps: Fraction | float, count: int) -> tuple[Any, Any]:
+    """Make a stage in memory and its one mesh: Z up, metres, one time code a frame from 0, fps time codes a second."""
+    pxr = usd_library()
+    stage = pxr.Usd.Stage.CreateInMemory(title)
+    pxr.UsdGeom.SetStageUpAxis(stage, pxr.UsdGeom.Tokens.z)
+    pxr.UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    stage.SetTimeCodesPerSecond(float(fps))
+    stage.SetFramesPerSecond(float(fps))
+    stage.SetStartTimeCode(0)
+    stage.SetEndTimeCode(count - 1)
+    root = pxr.UsdGeom.Xform.Define(stage, "/World")
+    stage.SetDefaultPrim(root.GetPrim())
+    mesh = pxr.UsdGeom.Mesh.Define(stage, "/World/" + pxr.Tf.MakeValidIdentifier(name))
+    mesh.CreateSubdivisionSchemeAttr(pxr.UsdGeom.Tokens.none)
+    return stage, mesh
+
+
+def export_stage(stage: Any, path: Path) -> None:
+    """Write a stage; raises ``OSError`` where the place does not take it."""
+    pxr = usd_library()
+    try:
+        exported = stage.GetRootLayer().Export(str(path))
+    except pxr.Tf.ErrorException as error:
+        full = "No space left" in str(error) or "File too large" in str(error)
+        raise OSError(errno.ENOSPC if full else errno.EIO, "the USD library failed") from error
+    if not exported:
+        raise OSError(errno.EIO, "the USD library failed")
 
 
 def usd_library() -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 from app.formats.gltf import to_linear, to_srgb
 from app.formats.meshfile import MeshFile, check_mesh, fan, to_int32, y_up_to_z_up
 from app.formats.tvm.frames import FrameMesh, MeshFrames
-from app.formats.usd import usd_library
+from app.formats.usd import begin_stage, export_stage, usd_library
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
 
@@ -40,17 +39,7 @@ def write_usd_frames(
     """
     pxr = usd_library()
     report = progress or silent
-    stage = pxr.Usd.Stage.CreateInMemory(path.name)
-    pxr.UsdGeom.SetStageUpAxis(stage, pxr.UsdGeom.Tokens.z)
-    pxr.UsdGeom.SetStageMetersPerUnit(stage, 1.0)
-    stage.SetTimeCodesPerSecond(float(fps))
-    stage.SetFramesPerSecond(float(fps))
-    stage.SetStartTimeCode(0)
-    stage.SetEndTimeCode(count - 1)
-    root = pxr.UsdGeom.Xform.Define(stage, "/World")
-    stage.SetDefaultPrim(root.GetPrim())
-    mesh = pxr.UsdGeom.Mesh.Define(stage, "/World/" + pxr.Tf.MakeValidIdentifier(name))
-    mesh.CreateSubdivisionSchemeAttr(pxr.UsdGeom.Tokens.none)
+    stage, mesh = begin_stage(path.name, name, fps, count)
     points, extent = mesh.CreatePointsAttr(), mesh.CreateExtentAttr()
     counts, corners = mesh.CreateFaceVertexCountsAttr(), mesh.CreateFaceVertexIndicesAttr()
     colours: Any = None
@@ -70,13 +59,7 @@ def write_usd_frames(
             linear = np.ascontiguousarray(to_linear(painted) / np.float32(65535), np.float32)
             colours.Set(pxr.Vt.Vec3fArray.FromNumpy(linear), frame)
         report((frame + 1) / (count + 1))
-    try:
-        exported = stage.GetRootLayer().Export(str(path))
-    except pxr.Tf.ErrorException as error:
-        full = "No space left" in str(error) or "File too large" in str(error)
-        raise OSError(errno.ENOSPC if full else errno.EIO, "the USD library failed") from error
-    if not exported:
-        raise OSError(errno.EIO, "the USD library failed")
+    export_stage(stage, path)
     report(1.0)
 
 
