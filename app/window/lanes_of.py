@@ -78,9 +78,7 @@ def _tracks(project: Project, shown: int) -> Lane:
 
 def _tracks_now(project: Project, shown: int) -> Lane:
     rows = tuple(_track_row(project, track) for track in project.document.tracks)
-    count = len(rows)
-    title = f"Points, {shown} of {count}" if count > shown else f"Points, {count}"
-    return Lane("tracks", title, "tracks", rows, 9, shown)
+    return Lane("tracks", "Points", "tracks", rows, 9, shown, counted=True)
 
 
 def _track_row(project: Project, track: Track) -> Row:

@@ -64,7 +64,7 @@ def colour_of(track: Track) -> str:
     return tracks[track.colour % len(tracks)]
 
 
-def _over_picture(track: Track) -> str:
+def colour_over_film(track: Track) -> str:
     """The same over a film, where every mark lies on a dark ground, whatever the look of the window."""
     tracks = theme.DARK.tracks
     return tracks[track.colour % len(tracks)]
@@ -82,7 +82,7 @@ def track_marks(project: Project, reading: Reading, frame: int, shown: Shown) ->
             TrackMark(
                 track.id,
                 track.name,
-                _over_picture(track),
+                colour_over_film(track),
                 known.positions,
                 HIDDEN_STATES.get(word, "seen"),
                 clicked=frame in track.clicks,
@@ -107,7 +107,7 @@ def layers(project: Project, marks: tuple[TrackMark, ...], frame: int, shown: Sh
         made.append(_masks(project, frame, shown))
     old = {**shown.compared, **shown.before}
     tracks = [track for track in project.document.tracks if track.visible and track.id in old]
-    made += [GhostPath(_around(old[track.id], frame), _over_picture(track)) for track in tracks]
+    made += [GhostPath(_around(old[track.id], frame), colour_over_film(track)) for track in tracks]
     made.append(TrackLayer(marks, frame, shown.paths, shown.names, shown.hovered))
     return made if shown.snap is None else [*made, shown.snap]
 

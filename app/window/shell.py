@@ -205,6 +205,7 @@ class Shell(QMainWindow, NamedPages):
     def _fit_lanes(self) -> None:
         """Give the lanes their room; in a low window one line each, unless the user has given them more."""
         self.timeline.lanes.show_compact(self.height() < LOW and self.split.by_hand is None)
+        self.timeline.show_room(self.split.room)
         self.split.fit(self.timeline.wanted_height())
 
     def resizeEvent(self, event: QResizeEvent) -> None:

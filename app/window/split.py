@@ -53,9 +53,15 @@ class Split(QSplitter):
             return True
         return super().eventFilter(watched, event)
 
-    def fit(self, wanted: int) -> None:
-        """Give the lower half the pixels chosen by hand, or those it wants, up to two fifths."""
+    @property
+    def room(self) -> int:
+        """Pixels that the lower half may have: those chosen by hand, or up to two fifths."""
         height, chosen = self.height(), self.by_hand
-        wanted = min(wanted, 2 * height // 5) if chosen is None else min(chosen, height - GAP)
+        return 2 * height // 5 if chosen is None else min(chosen, height - GAP)
+
+    def fit(self, wanted: int) -> None:
+        """Give the lower half the pixels chosen by hand, or those it wants where there is room for them."""
+        height = self.height()
+        wanted = min(wanted, self.room) if self.by_hand is None else self.room
         if height > 0 and abs(self.sizes()[1] - wanted) > 1:
             self.setSizes([height - wanted - GAP, wanted])

@@ -16,6 +16,8 @@ from app.window.timeline import Bar, Lane, LaneEdit, LaneView, TimelineHit, Tran
 from app.window.timeline.lanes import total_height
 from app.window.timeline.transport import Entry
 
+MARGIN = 4
+"""Pixels of the panel that are neither transport nor lanes."""
 NEARBY = 12.0
 """Pixels round a click in the curve of errors within which the worst frame is looked for."""
 
@@ -54,7 +56,11 @@ class TimelinePanel(Panel):
 
     def wanted_height(self) -> int:
         """Pixels that transport and lanes need."""
-        return self.transport.height() + total_height(self.lanes.placed) + 4
+        return self.transport.height() + total_height(self.lanes.placed) + MARGIN
+
+    def show_room(self, height: int) -> None:
+        """Fit the lanes into a panel of so many pixels, as far as they can be."""
+        self.lanes.show_room(height - self.transport.height() - MARGIN)
 
     def show_lanes(self, lanes: list[Lane], legend: Sequence[Entry]) -> None:
         """Show the lanes of a workspace, and their legend."""

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QApplication
 from app.window.lanes_of import span_bars
 from app.window.timeline import Bar, Curve, Diamond, Lane, LaneView, Row, Transport
 from app.window.timeline.axis import LABELS, Axis
-from app.window.timeline.lanes import RULER, hit, layout, total_height
+from app.window.timeline.lanes import FEWEST, RULER, fitted, hit, layout, total_height
 from tests.window.conftest import at, drag
 
 axes = st.builds(lambda count, width: Axis().sized(width, count), st.integers(2, 5000), st.integers(500, 3000))
@@ -218,3 +218,31 @@ def test_transport_asks(qapp: QApplication) -> None:
     assert "2.00 s" in bar.of.text()
     bar.close()
     bar.deleteLater()
+
+
+def test_lanes_show_fewer_rows_where_there_is_little_room() -> None:
+    """The lane with most rows gives way first, says so, and keeps three; what has room is left as it is."""
+    rows = tuple(Row(f"t{number}", (Bar(0, 99, "#58C4DD"),)) for number in range(20))
+    lanes = (replace(LANES[1], rows=rows, counted=True), replace(LANES[1], id="contacts", rows=rows[:6]), LANES[2])
+    whole = total_height(layout(lanes))
+    assert fitted(lanes, whole) == lanes
+    for room in range(whole - 1, 150, -7):
+        fit = fitted(lanes, room)
+        shown = [min(lane.shown_rows, len(lane.rows)) for lane in fit[:2]]
+        assert total_height(layout(fit)) <= room or shown == [FEWEST, FEWEST]
+        assert abs(shown[0] - shown[1]) <= 1 or shown[1] == 6, "the one with most rows first"
+    assert fitted(lanes, 0)[0].words == f"Points, {FEWEST} of 20"
+    placed = layout(fitted(lanes, whole - 9), {"tracks": 13})
+    assert placed[0].rows[-1][0].id == "t19", "a lane scrolled to its end with fewer rows shows its end"
+
+
+def test_a_row_is_scrolled_to_where_few_rows_are_shown(lanes: LaneView) -> None:
+    """A point chosen elsewhere is brought into sight in the rows that there is room for."""
+    rows = tuple(Row(f"t{number}", (Bar(0, 99, "#58C4DD"),)) for number in range(8))
+    lanes.show_lanes((replace(LANES[1], rows=rows), LANES[2]), 100)
+    lanes.show_room(100)
+    assert len(lanes.placed[0].rows) < 8
+    lanes.show_row("tracks", "t7")
+    assert "t7" in [row.id for row, _, _ in lanes.placed[0].rows]
+    lanes.show_room(1000)
+    assert [row.id for row, _, _ in lanes.placed[0].rows] == [row.id for row in rows]

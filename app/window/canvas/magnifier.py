@@ -36,6 +36,6 @@ def paint(
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(QPen(marks.UNDERLAY, 4))
     painter.drawEllipse(centre, RADIUS, RADIUS)
-    painter.setPen(QPen(theme.active().colour("edit"), 2))
+    painter.setPen(QPen(theme.DARK.colour("edit"), 2))
     painter.drawEllipse(centre, RADIUS, RADIUS)
     marks.plate(painter, x, y + RADIUS - 14, "6×", QColor(255, 255, 255), size=fonts.LANE, align="centre")

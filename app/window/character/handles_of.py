@@ -68,7 +68,7 @@ def handles(
     tracks = {vertex: named[track_id] for track_id, vertex in character.pairs.items()}
     made = []
     wanted = set(tracks) | control_vertices(character) | ({project.vertex} if project.vertex >= 0 else set())
-    look = theme.active().tracks
+    look = theme.DARK.tracks  # marks over a picture have a dark ground in either look
     for vertex in sorted(wanted):
         if vertex >= len(vertices):
             continue

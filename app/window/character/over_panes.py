@@ -43,14 +43,14 @@ class OverPanes:
     def notes(self, pane: Pane) -> Sequence[Callable[[QPainter, Lens], None]]:
         """What paints over a pane, in this order."""
         return (
-            self._ghosts,
+            lambda painter, lens: self._ghosts(painter, lens, pane.view),
             lambda painter, lens: self._trails(painter, lens, pane.view),
             lambda painter, lens: self._legends(painter, lens, pane),
         )
 
-    def _ghosts(self, painter: QPainter, lens: Lens) -> None:
+    def _ghosts(self, painter: QPainter, lens: Lens, view: Viewport) -> None:
         if self.ghosting:
-            paint_ghosts(painter, lens, self.ghosts())
+            paint_ghosts(painter, lens, self.ghosts(), film=view.through_camera)
 
     def _trails(self, painter: QPainter, lens: Lens, view: Viewport) -> None:
         if view.carrying:

@@ -90,9 +90,9 @@ def paint_camera(painter: QPainter, lens: Lens, camera: Camera, size: tuple[int,
     seen, tip = lens.to_widget(base), lens.to_widget(camera.centre)
     if not (np.isfinite(seen).all() and np.isfinite(tip).all()):
         return
-    pen = QPen(theme.DARK.colour("contact", 210), 1.4)
-    painter.setPen(pen)
-    painter.setBrush(theme.DARK.colour("contact", 26))
+    look = theme.active()  # it is drawn in space only, on the ground of the look itself
+    painter.setPen(QPen(look.colour("contact", 210), 1.4))
+    painter.setBrush(look.colour("contact", 26))
     points = [QPointF(float(x), float(y)) for x, y in seen]
     painter.drawPolygon(points)
     for point in points:
@@ -112,7 +112,7 @@ def paint_legend(painter: QPainter, lens: Lens, *, ghosts: bool) -> None:
     total = sum(metrics.horizontalAdvance(text) + 34 for _, text in entries)
     x, y = 12.0, height - 20.0
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(QColor(0, 0, 0, 120))
+    painter.setBrush(marks.PLATE)
     painter.drawRoundedRect(QRectF(x - 4, y - 13, min(total, width - 16.0), 26), 5, 5)
     for kind, text in entries:
         if x + metrics.horizontalAdvance(text) + 26 > width - 8:

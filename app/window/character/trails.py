@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from app.model.character import Character
 from app.window.character.motion import Motion
 from app.window.character.overlays import Trail
-from app.window.picture_layers import colour_of
+from app.window.picture_layers import colour_of, colour_over_film
 from app.window.project import Project
 from app.window.reading import Reading
 
@@ -32,5 +32,5 @@ def filmed_trails(project: Project, reading: Reading | None, frame: int) -> Sequ
     for track in project.document.tracks:
         places = reading.track(track).positions[first : frame + REACH + 1]
         if track.visible and frame - first < len(places):
-            made.append(Trail(colour_of(track), places, frame - first))
+            made.append(Trail(colour_over_film(track), places, frame - first))
     return made

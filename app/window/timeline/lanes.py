@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -13,6 +13,8 @@ from app.window.timeline.axis import LABELS, Axis
 
 RULER = 26
 LOW, TALLER = 14, 5
+FEWEST = 3
+"""Rows that a lane keeps, however little room there is for it: fewer could not be compared."""
 HANDLE, TRIM = 9, 4
 """Pixels within which a handle of the range and the end of a bar are taken hold of."""
 Style = Literal["solid", "dim", "hatch", "line"]
@@ -61,6 +63,7 @@ class Curve:
 class Lane:
     """A titled group of rows, a row of thumbnails, or a curve.
 
+    counted : whether the title says how many of its rows are shown, where that is not all of them.
     edits : what the mouse may change in it: "retime" its diamonds, "paint" runs, "trim" their ends.
     compact : it is one line, no higher than its row.
     """
@@ -76,6 +79,15 @@ class Lane:
     padding: int = 6
     edits: tuple[str, ...] = ()
     compact: bool = False
+    counted: bool = False
+
+    @property
+    def words(self) -> str:
+        """The title, and how many rows there are."""
+        if not self.counted:
+            return self.title
+        many = len(self.rows)
+        return f"{self.title}, {self.shown_rows} of {many}" if many > self.shown_rows else f"{self.title}, {many}"
 
 
 @dataclass(frozen=True)
@@ -110,7 +122,7 @@ def layout(lanes: Sequence[Lane], scrolled: dict[str, int] | None = None) -> tup
     placed, top = [], RULER
     for lane in lanes:
         rows, y = [], top + lane.padding
-        first = (scrolled or {}).get(lane.id, 0)
+        first = min((scrolled or {}).get(lane.id, 0), max(len(lane.rows) - lane.shown_rows, 0))
         shown = lane.rows[first : first + lane.shown_rows]
         for row in shown:
             height = lane.row_height + (TALLER if row.selected and lane.row_height < LOW else 0)
@@ -132,6 +144,21 @@ def layout(lanes: Sequence[Lane], scrolled: dict[str, int] | None = None) -> tup
         placed.append(Placed(lane, top, bottom - top, tuple(rows)))
         top = bottom
     return tuple(placed)
+
+
+def fitted(lanes: Sequence[Lane], room: int) -> tuple[Lane, ...]:
+    """Show fewer rows, of the lane with most of them first, until ruler and lanes need no more than ``room`` pixels.
+
+    The rows left out are scrolled to; a lane that stood cut by the lower edge would not be seen to be there at all.
+    """
+    fit = list(lanes)
+    while total_height(layout(fit)) > room:
+        seen = [min(len(lane.rows), lane.shown_rows) for lane in fit]
+        number = max(range(len(fit)), key=seen.__getitem__, default=-1)
+        if number < 0 or seen[number] <= FEWEST:
+            break
+        fit[number] = replace(fit[number], shown_rows=seen[number] - 1)
+    return tuple(fit)
 
 
 def total_height(placed: Sequence[Placed]) -> int:

@@ -68,7 +68,7 @@ def _label(painter: QPainter, placed: Placed) -> None:
     painter.drawPixmap(QPointF(12, middle - 8), icons.pixmap(placed.lane.icon, "text3", 16))
     painter.setFont(fonts.font(fonts.CAPTION, QFont.Weight.Medium))
     painter.setPen(look.colour("text2"))
-    painter.drawText(QRectF(36, middle - 10, LABELS - 44, 20), Qt.AlignmentFlag.AlignVCenter, placed.lane.title)
+    painter.drawText(QRectF(36, middle - 10, LABELS - 44, 20), Qt.AlignmentFlag.AlignVCenter, placed.lane.words)
 
 
 def paint_bar(painter: QPainter, axis: Axis, bar: Bar, top: float, height: float) -> None:

@@ -12,7 +12,7 @@ from app.window import theme
 from app.window.timeline import paint
 from app.window.timeline.axis import LABELS, Axis
 from app.window.timeline.drags import LaneDrag, LaneEdit, drag_from
-from app.window.timeline.lanes import RULER, Lane, Placed, TimelineHit, hit, layout, total_height
+from app.window.timeline.lanes import RULER, Lane, Placed, TimelineHit, fitted, hit, layout, total_height
 from app.window.timeline.summary import summaries
 
 HAND, SIDEWAYS = Qt.CursorShape.PointingHandCursor, Qt.CursorShape.SizeHorCursor
@@ -41,6 +41,7 @@ class LaneView(QWidget):
         self.placed: tuple[Placed, ...] = ()
         self.thumbnail: paint.Thumbnail | None = None
         self.compact = False
+        self.room = 10_000
         self._scrolled: dict[str, int] = {}
         self._still: QPixmap | None = None
         self._outdated: set[int] = set()
@@ -70,9 +71,15 @@ class LaneView(QWidget):
             self.compact = on
             self._place()
 
+    def show_room(self, room: int) -> None:
+        """Show fewer rows of the lanes where they have less room, pixels, than they want."""
+        if room != self.room:
+            self.room = room
+            self._place()
+
     def _place(self) -> None:
-        before = self.placed
-        self.placed = layout(summaries(self.lanes)) if self.compact else layout(self.lanes, self._scrolled)
+        before, lanes = self.placed, summaries(self.lanes) if self.compact else fitted(self.lanes, self.room)
+        self.placed = layout(lanes, None if self.compact else self._scrolled)
         if self._still is not None and _alike(before, self.placed):
             self._renew({number for number, each in enumerate(self.placed) if each != before[number]})
             return
@@ -207,12 +214,13 @@ class LaneView(QWidget):
             lane = each.lane
             if each.top <= y < each.top + each.height and len(lane.rows) > lane.shown_rows:
                 latest = len(lane.rows) - lane.shown_rows
-                self._scrolled[lane.id] = min(max(self._scrolled.get(lane.id, 0) + step, 0), latest)
+                first = min(self._scrolled.get(lane.id, 0), latest)
+                self._scrolled[lane.id] = min(max(first + step, 0), latest)
                 self._place()
 
     def show_row(self, lane_id: str, row_id: str) -> None:
         """Scroll a lane so that a row is seen."""
-        for lane in self.lanes:
+        for lane in (each.lane for each in self.placed):
             index = next((number for number, row in enumerate(lane.rows) if row.id == row_id), None)
             if lane.id != lane_id or index is None:
                 continue

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from app.window import theme
 from app.window.canvas import marks
@@ -27,6 +27,7 @@ class Handle:
     vertex, title : which, and its name. place : world. before : where it was before it was moved, world.
     kind : "ray" held by its image point, "anchor" held in 3D, "edited" moved in this frame, "edited ray" moved there by
         its image point, "plain" a control vertex that was moved in another frame, or only chosen.
+    colour : a token of the dark look, or a literal that is light: each mark has a dark ground, whatever the look.
     warning : it is farther from its point than the limit.
     """
 
@@ -51,15 +52,17 @@ def paint_handles(painter: QPainter, lens: Lens, handles: Sequence[Handle], poin
             continue
         _link(painter, lens, handle, x, y)
         if handle.vertex in pointed:
-            painter.setPen(QPen(QColor(255, 255, 255, 200), 1.6))
             painter.setBrush(QColor(255, 255, 255, 60))
-            painter.drawEllipse(QPointF(x, y), 13.0, 13.0)
+            for pen in (QPen(marks.UNDERLAY, 3.4), QPen(QColor(255, 255, 255, 200), 1.6)):
+                painter.setPen(pen)
+                painter.drawEllipse(QPointF(x, y), 13.0, 13.0)
+                painter.setBrush(Qt.BrushStyle.NoBrush)
         paint_shape(painter, handle, x, y)
         if handle.selected:
             _axes(painter, lens, handle, x, y)
         if handle.selected or handle.vertex in pointed:
             fits = x + 14 + marks.plate_size(handle.title)[0] < lens.size[0]
-            look, side = theme.active().colour(_colour(handle)), "left" if fits else "right"
+            look, side = theme.DARK.colour(_colour(handle)), "left" if fits else "right"
             marks.plate(painter, x + 14 if fits else x - 14, y - 20, handle.title, look, align=side)
 
 
@@ -69,12 +72,12 @@ def _colour(handle: Handle) -> str:
 
 def paint_shape(painter: QPainter, handle: Handle, x: float, y: float) -> None:
     """Draw what a handle is: filled for 3D, a ring for an image point, large where it was moved in this frame."""
-    colour = theme.active().colour(_colour(handle))
+    colour = theme.DARK.colour(_colour(handle))
     radius = 7.5 if handle.kind.startswith("edited") else 5.5
     marks.ring(painter, x, y, colour, radius, filled=handle.kind in ("edited", "anchor"))
     if handle.warning:
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(QPen(theme.active().colour("err"), 2.0))
+        painter.setPen(QPen(theme.DARK.colour("err"), 2.0))
         painter.drawEllipse(QPointF(x, y), radius + 4.0, radius + 4.0)
 
 
@@ -83,9 +86,8 @@ def _link(painter: QPainter, lens: Lens, handle: Handle, x: float, y: float) -> 
         return
     start = lens.to_widget(np.array(handle.before))
     if np.isfinite(start).all() and np.hypot(start[0] - x, start[1] - y) > 4:
-        pen = QPen(QColor(255, 255, 255, 150), 1.4, Qt.PenStyle.DashLine)
-        painter.setPen(pen)
-        painter.drawLine(QPointF(float(start[0]), float(start[1])), QPointF(x, y))
+        way = QPolygonF([QPointF(float(start[0]), float(start[1])), QPointF(x, y)])
+        marks.stroke(painter, way, QColor(255, 255, 255, 200), 1.4, dash=True)
         marks.ring(painter, float(start[0]), float(start[1]), QColor(255, 255, 255, 150), 4.5, dot=False)
 
 
