@@ -10,7 +10,7 @@ export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 TEST_ENV := QT_QPA_PLATFORM=offscreen VTK_DEFAULT_OPENGL_WINDOW=vtkEGLRenderWindow
 
-.PHONY: help install demo gui test fast lint bench screenshots lock clean
+.PHONY: help install demo gui test screen fast lint bench screenshots lock clean
 
 help: ## what can be made
 	@grep -E '^[a-z]+:.*##' Makefile | sed 's/:.*##/ -/'
@@ -29,6 +29,9 @@ gui: install ## open the window on the sample project
 
 test: install ## all tests
 	@$(TEST_ENV) $(BIN)/python -m pytest -n 2 --dist loadgroup
+
+screen: install ## the window's tests on virtual X screens (needs Xvfb and the X libraries of docs/install.md)
+	@QT_QPA_PLATFORM=xcb $(BIN)/python -m pytest -n 2 --dist loadgroup tests/window
 
 fast: install ## the tests that take less than five seconds each
 	@$(TEST_ENV) $(BIN)/python -m pytest -n 2 --dist loadgroup -m "not slow and not realdata"

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import gc
+import os
 import shutil
+import subprocess
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -44,7 +46,35 @@ def nothing_remembered(private_places: None) -> None:
 
 
 @pytest.fixture(scope="session")
-def qapp(private_places: None) -> QApplication:
+def screen_of_its_own(private_places: None) -> Iterator[bool]:
+    """On a screen only one window has the keys: every process of the tests has a virtual screen where there are any.
+
+    Yields whether the screen is this process's alone. Without ``Xvfb``, or on a screen that was asked for with
+    ``MOTIONWRIGHT_SCREEN=given``, the processes take turns.
+    """
+    virtual = shutil.which("Xvfb")
+    if os.environ.get("QT_QPA_PLATFORM") != "xcb" or not virtual or os.environ.get("MOTIONWRIGHT_SCREEN") == "given":
+        yield os.environ.get("QT_QPA_PLATFORM") == "offscreen"
+        return
+    heard, said = os.pipe()
+    with subprocess.Popen(
+        [virtual, "-displayfd", str(said), "-screen", "0", "1920x1200x24", "-nolisten", "tcp"],
+        pass_fds=[said],
+        stderr=subprocess.DEVNULL,
+    ) as server:
+        os.close(said)
+        with os.fdopen(heard) as answer:
+            number = answer.readline().strip()
+        assert number, "the virtual screen did not start"
+        patch = pytest.MonkeyPatch()
+        patch.setenv("DISPLAY", f":{number}")
+        yield True
+        patch.undo()
+        server.terminate()
+
+
+@pytest.fixture(scope="session")
+def qapp(private_places: None, screen_of_its_own: bool) -> QApplication:
     """The application as users get it: typeface, look, icons."""
     return make_application()
 
@@ -86,9 +116,11 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True)
-def display_of_its_own(qapp: QApplication, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """On a real screen only one window has the keys: tests of other processes wait for this one to end."""
-    if QApplication.platformName() != "xcb":
+def keys_of_its_own(
+    qapp: QApplication, screen_of_its_own: bool, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[None]:
+    """On a screen that processes share, a test waits until the one of another process has ended."""
+    if screen_of_its_own:
         yield
         return
     import fcntl
