@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import os
 import shutil
@@ -57,20 +58,22 @@ def screen_of_its_own(private_places: None) -> Iterator[bool]:
         yield os.environ.get("QT_QPA_PLATFORM") == "offscreen"
         return
     heard, said = os.pipe()
-    with subprocess.Popen(
+    server = subprocess.Popen(
         [virtual, "-displayfd", str(said), "-screen", "0", "1920x1200x24", "-nolisten", "tcp"],
         pass_fds=[said],
         stderr=subprocess.DEVNULL,
-    ) as server:
-        os.close(said)
-        with os.fdopen(heard) as answer:
-            number = answer.readline().strip()
-        assert number, "the virtual screen did not start"
-        patch = pytest.MonkeyPatch()
-        patch.setenv("DISPLAY", f":{number}")
-        yield True
-        patch.undo()
-        server.terminate()
+    )
+    # After Qt, which ends the process when its screen goes first.
+    atexit.register(server.wait)
+    atexit.register(server.terminate)  # the last named goes first
+    os.close(said)
+    with os.fdopen(heard) as answer:
+        number = answer.readline().strip()
+    assert number, "the virtual screen did not start"
+    patch = pytest.MonkeyPatch()
+    patch.setenv("DISPLAY", f":{number}")
+    yield True
+    patch.undo()
 
 
 @pytest.fixture(scope="session")
