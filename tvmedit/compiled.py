@@ -18,3 +18,8 @@ def compiled(function: Function) -> Function:
 def compiled_sums(function: Function) -> Function:
     """Compile a loop of sums whose terms may be taken several at a time: same bits on one machine."""
     return cast("Function", njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})(function))
+
+
+def compiled_lanes(function: Function) -> Function:
+    """Compile a loop whose rounds are independent, several at a time; a division by zero gives inf, not an error."""
+    return cast("Function", njit(cache=True, nogil=True, error_model="numpy")(function))

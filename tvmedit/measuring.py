@@ -14,7 +14,7 @@ from imitation.progress import Progress, silent
 from tvmedit.features import CylinderHistograms, Features, Method, SphericalHistograms, checked_meshes, facing
 from tvmedit.features.heading import turning
 from tvmedit.features.lengthwise import lengthwise_cues
-from tvmedit.features.measure import foot_cue, surface_samples
+from tvmedit.features.measure import foot_cue, samples_by_area
 from tvmedit.features.paper import ANGLE_BIN
 
 Array = NDArray[np.float64]
@@ -113,12 +113,13 @@ class _Pass:
         self.scale = 0.0
 
     def add(self, vertices: Array, faces: NDArray[np.int32]) -> None:
-        areas = self.robust.add(vertices, faces)
+        areas, running = self.robust.add(vertices, faces)
+        assert running is not None
         if not self.scale:
             # The cue's bands need a body height before it is known: the first frame's own must do.
             self.scale = self.robust.height or max(self.robust.highs[-1] - self.robust.lows[-1], 1e-9)
         self.cues.append(foot_cue(vertices, areas, self.robust.lows[-1], self.scale))
-        self.samples.append(surface_samples(vertices, faces, SAMPLES))
+        self.samples.append(samples_by_area(vertices, faces, running, SAMPLES))
         if self.printed is not None:
             self.printed.add(vertices)
 

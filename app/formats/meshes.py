@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 from app.formats.atomic import replacing
 from app.formats.glb import read_glb, write_glb
-from app.formats.images import read_bytes
-from app.formats.meshfile import MeshFile, Up, check_mesh
+from app.formats.meshfile import MeshFile, Up, check_mesh, mesh_bytes
 from app.formats.obj import read_obj, write_obj
 from app.formats.off import read_off, write_off
 from app.formats.ply import read_ply, write_ply
@@ -47,7 +46,7 @@ def read_mesh(path: str | Path) -> MeshFile:
         raise InputError(f"The file {path.name} is no mesh that can be read: give PLY, OBJ, OFF, STL or GLB.")
     if not path.is_file():
         raise InputError(f"The mesh {path} does not exist: choose another file.")
-    return check_mesh(reader(path, read_bytes(path).tobytes()))
+    return check_mesh(reader(path, mesh_bytes(path)))
 
 
 def write_mesh(

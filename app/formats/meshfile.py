@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Literal
 
 import attrs
@@ -53,6 +54,17 @@ class MeshFile:
     name: str = ""
 
 
+def mesh_bytes(path: Path) -> bytes:
+    """The content of a mesh's file, or an InputError of one sentence."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"The file {path} cannot be read: {error.strerror or error}.") from error
+    if not data:
+        raise InputError(f"The file {path} is empty: choose another one.")
+    return data
+
+
 def check_mesh(mesh: MeshFile) -> MeshFile:
     """Give the mesh back if it can be used.
 
@@ -91,6 +103,8 @@ def fan(polygons: list[list[int]]) -> NDArray[np.int64]:
 
 def to_int32(faces: NDArray[np.integer], name: str) -> NDArray[np.int32]:
     """Faces as int32; values beyond its range are an error, never wrapped round."""
+    if faces.dtype == np.int32:
+        return np.asarray(faces, np.int32)
     if faces.size and (faces.max() > np.iinfo(np.int32).max or faces.min() < np.iinfo(np.int32).min):
         raise InputError(f"The mesh {name} has faces with impossible vertex numbers: the file is damaged.")
     return faces.astype(np.int32)

@@ -32,7 +32,7 @@ def read_ply(data: bytes, name: str) -> MeshFile:
     elif isinstance(lists, np.ndarray):
         # Triangles of whole numbers, which nearly every file has, are the faces already.
         ready = lists.ndim == 2 and lists.shape[1] == 3 and lists.dtype.kind == "i"
-        faces = np.ascontiguousarray(lists, np.int32) if ready else fans(lists.astype(np.int64))
+        faces = _together(lists).astype(np.int32, copy=False) if ready else fans(lists.astype(np.int64))
     else:
         faces = fan(lists)
     return MeshFile(vertices, to_int32(faces, name), _colors(vertex), None, name)
@@ -104,6 +104,12 @@ def _columns(table: Columns, names: tuple[str, ...], kind: Any = None) -> NDArra
             raise ValueError(name)
         together[:, k] = column
     return together
+
+
+def _together(lists: NDArray[Any]) -> NDArray[Any]:
+    """Lists (m, k) out of the rows of a file, side by side: a whole list is copied at once, not value by value."""
+    whole = np.ascontiguousarray(lists.view(f"V{lists.shape[1] * lists.dtype.itemsize}"))
+    return whole.view(lists.dtype).reshape(lists.shape)
 
 
 def _colors(vertex: Columns) -> NDArray[np.uint8] | None:

@@ -27,7 +27,8 @@ from resources.performer import (
 )
 from tests.benchmarks.record import Recorder, cpu_seconds
 from tvmedit.features import CylinderHistograms, Features, frame_features, hann_taps, yaw_free_atom_distances
-from tvmedit.features.measure import cylinder_histogram, foot_cue, surface_samples, vertex_areas
+from tvmedit.features.cylinder import cylinder_histogram
+from tvmedit.features.measure import foot_cue, surface_samples, vertex_areas
 from tvmedit.structure import Agreement, Structure, texton_errors
 
 Pair = tuple[Capture, Structure, Structure]

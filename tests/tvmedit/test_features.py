@@ -9,6 +9,7 @@ import tvmedit
 from imitation import InputError
 from resources.performer import Capture, Part, perform, perform_hound
 from tvmedit.features import Features, hann_taps, yaw_free_atom_distances
+from tvmedit.features.cylinder import cylinder_histogram
 from tvmedit.features.lengthwise import lengthwise_cues
 from tvmedit.measuring import measure
 
@@ -44,6 +45,32 @@ def test_robust_features_ignore_place_and_follow_turns(capture: Capture) -> None
     assert np.abs(histograms[0] - histograms[1]).max() < 1e-5
     assert np.abs(np.roll(histograms[0], 1, axis=2) - histograms[2]).max() < 1e-3
     assert (histograms**2).sum(axis=(1, 2, 3)) == pytest.approx(np.ones(3), abs=1e-5)
+
+
+def test_the_soft_histogram_is_what_plain_sums_give() -> None:
+    """Each vertex shared among the eight bins around it, the azimuth by the library's arc tangent, bin by bin."""
+    random = np.random.default_rng(5)
+    for scale in (0.1, 1.0, 30.0):
+        vertices = scale * random.normal(size=(700, 3)) + (0.0, 0.0, scale)
+        # On the axes and diagonals, behind, and on the vertical itself.
+        vertices[:9, :2] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]]
+        weights = random.random(700) * (random.random(700) < 0.8)
+        plain = np.zeros((10, 6, 24))
+        for (x, y, z), weight in zip(vertices, weights, strict=True):
+            places = (
+                (np.clip(z / (1.7 * 0.13) - 0.5, 0, 9), 10),
+                (np.clip(np.hypot(x, y) / (1.7 * 0.1) - 0.5, 0, 5), 6),
+                (np.arctan2(y, x) / (2 * np.pi) * 24 + 23.5, 24),
+            )
+            for corner in np.ndindex(2, 2, 2):
+                share, index = weight, []
+                for (place, count), side in zip(places, corner, strict=True):
+                    low = int(np.floor(place))
+                    share *= place - low if side else 1 - (place - low)
+                    index.append((low + side) % count)
+                plain[tuple(index)] += share
+        counted = cylinder_histogram(vertices, weights, 0.0, 0.0, 0.0, 1.7)
+        np.testing.assert_allclose(counted.astype(float) ** 2, plain / plain.sum(), atol=1e-7)
 
 
 def test_atom_distance_is_eq_5_with_clamped_ends() -> None:

@@ -1,4 +1,4 @@
-"""Compiled measures of one mesh: vertex areas, low and high ends, and the soft cylinder histogram."""
+"""Compiled measures of one mesh: areas, the centroid, the foot cue, and points spread over the surface."""
 
 from __future__ import annotations
 
@@ -10,79 +10,60 @@ from tvmedit.compiled import compiled
 Array = NDArray[np.float64]
 Faces = NDArray[np.int32]
 
-HEIGHT_BINS, RADIUS_BINS, AZIMUTH_BINS = 10, 6, 24
-HEIGHT_STEP, RADIUS_STEP = 0.13, 0.10
-"""Bin sizes of the robust histogram in body heights; the last radius bin is open."""
-
 
 @compiled
-def vertex_areas(vertices: Array, faces: Faces) -> tuple[Array, float]:
-    """A third of its triangles' areas for each vertex, and the mean edge length of every eighth triangle."""
+def mesh_areas(vertices: Array, faces: Faces) -> tuple[Array, Array, float]:
+    """A third of its triangles' areas for each vertex, the running sum of areas, and the mean edge length.
+
+    Returns
+    -------
+    (v,) float64, squared unit
+    (m,) float64, squared unit
+        Twice the area of the triangles up to each one.
+    float, unit
+        Mean length of the first edge of every eighth triangle.
+    """
     areas = np.zeros(len(vertices))
-    edges, counted = 0.0, 0
+    running = np.empty(len(faces))
+    edges, counted, total = 0.0, 0, 0.0
     for f in range(len(faces)):
         i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
         ax, ay, az = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
         bx, by, bz = vertices[k, 0] - vertices[i, 0], vertices[k, 1] - vertices[i, 1], vertices[k, 2] - vertices[i, 2]
         cx, cy, cz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-        third = np.sqrt(cx * cx + cy * cy + cz * cz) / 6.0
+        twice = np.sqrt(cx * cx + cy * cy + cz * cz)
+        total += twice
+        running[f] = total
+        third = twice / 6.0
         areas[i] += third
         areas[j] += third
         areas[k] += third
         if f % 8 == 0:
             edges += np.sqrt(ax * ax + ay * ay + az * az)
             counted += 1
-    return areas, edges / max(counted, 1)
+    return areas, running, edges / max(counted, 1)
+
+
+def vertex_areas(vertices: Array, faces: Faces) -> tuple[Array, float]:
+    """A third of its triangles' areas for each vertex (v,), and the mean edge length."""
+    areas, _, edge = mesh_areas(vertices, faces)
+    return areas, edge
 
 
 @compiled
-def cylinder_histogram(
-    vertices: Array, weights: Array, centre_x: float, centre_y: float, floor: float, height: float
-) -> NDArray[np.float32]:
-    """Soft histogram over height, radius and azimuth around a vertical axis.
+def ground_centroid(vertices: Array, weights: Array) -> tuple[float, float, float]:
+    """Weighted mean of x and of y, and the sum of the weights; (0, 0, 0) where that is not positive.
 
-    Each vertex shares its weight trilinearly among the eight bins whose centres surround it.
-
-    Parameters
-    ----------
-    vertices : (v, 3) float64
-        z up.
-    weights : (v,) float64
-        Not negative, of positive sum.
-    centre_x, centre_y, floor, height : float
-        The axis, z of the ground, and the body height that lengths are divided by.
-
-    Returns
-    -------
-    (10, 6, 24) float32
-        Square roots of shares: their squares sum to 1.
+    Not by BLAS, whose threads would only wait for each other on so little, and whose sums depend on their number.
     """
-    bins = np.zeros((HEIGHT_BINS, RADIUS_BINS, AZIMUTH_BINS))
-    total = 0.0
+    x, y, total = 0.0, 0.0, 0.0
     for i in range(len(vertices)):
-        weight = weights[i]
-        if weight <= 0.0:
-            continue
-        total += weight
-        x, y = vertices[i, 0] - centre_x, vertices[i, 1] - centre_y
-        z = (vertices[i, 2] - floor) / (height * HEIGHT_STEP) - 0.5
-        r = np.sqrt(x * x + y * y) / (height * RADIUS_STEP) - 0.5
-        a = (np.arctan2(y, x) / (2.0 * np.pi) + 1.0) * AZIMUTH_BINS - 0.5
-        z = min(max(z, 0.0), HEIGHT_BINS - 1.0)
-        r = min(max(r, 0.0), RADIUS_BINS - 1.0)
-        z0, r0, a0 = int(z), int(r), int(a)
-        zf, rf, af = z - z0, r - r0, a - a0
-        z1, r1 = min(z0 + 1, HEIGHT_BINS - 1), min(r0 + 1, RADIUS_BINS - 1)
-        a1 = (a0 + 1) % AZIMUTH_BINS
-        a0 = a0 % AZIMUTH_BINS
-        low, high = weight * (1.0 - zf), weight * zf
-        for zz, share in ((z0, low), (z1, high)):
-            near, far = share * (1.0 - rf), share * rf
-            bins[zz, r0, a0] += near * (1.0 - af)
-            bins[zz, r0, a1] += near * af
-            bins[zz, r1, a0] += far * (1.0 - af)
-            bins[zz, r1, a1] += far * af
-    return np.sqrt(bins / total).astype(np.float32)
+        x += weights[i] * vertices[i, 0]
+        y += weights[i] * vertices[i, 1]
+        total += weights[i]
+    if not total > 0.0:
+        return 0.0, 0.0, 0.0
+    return x / total, y / total, total
 
 
 @compiled
@@ -164,9 +145,14 @@ def foot_cue(vertices: Array, areas: Array, lowest: float, height: float) -> Arr
     return cue
 
 
-@compiled
 def surface_samples(vertices: Array, faces: Faces, count: int) -> NDArray[np.float32]:
-    """Points spread evenly over the surface, the same for the same mesh.
+    """Points (count, 3) float32 spread evenly over the surface, the same for the same mesh."""
+    return samples_by_area(vertices, faces, mesh_areas(vertices, faces)[1], count)
+
+
+@compiled
+def samples_by_area(vertices: Array, faces: Faces, running: Array, count: int) -> NDArray[np.float32]:
+    """Points spread evenly over the surface; ``running`` (m,) is the running sum of ``mesh_areas``.
 
     One point in each of ``count`` equal parts of the area, taken in the order of the triangles.
 
@@ -174,15 +160,7 @@ def surface_samples(vertices: Array, faces: Faces, count: int) -> NDArray[np.flo
     -------
     (count, 3) float32
     """
-    running = np.empty(len(faces))
-    total = 0.0
-    for f in range(len(faces)):
-        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-        ux, uy, uz = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
-        wx, wy, wz = vertices[k, 0] - vertices[i, 0], vertices[k, 1] - vertices[i, 1], vertices[k, 2] - vertices[i, 2]
-        nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-        total += np.sqrt(nx * nx + ny * ny + nz * nz)
-        running[f] = total
+    total = running[-1]
     points = np.empty((count, 3), np.float32)
     face = 0
     for s in range(count):

@@ -6,15 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from imitation.errors import InputError
+from tvmedit.features.cylinder import AZIMUTH_BINS, HEIGHT_BINS, RADIUS_BINS, cylinder_histogram
 from tvmedit.features.feature import Features
 from tvmedit.features.frames import Array, Faces
-from tvmedit.features.measure import (
-    AZIMUTH_BINS,
-    HEIGHT_BINS,
-    RADIUS_BINS,
-    cylinder_histogram,
-    vertex_areas,
-)
+from tvmedit.features.measure import ground_centroid, mesh_areas
 
 BUFFERED = 2_000_000
 """So many vertices are held back until the ground and the body height are known (about 48 MB)."""
@@ -46,19 +41,18 @@ class CylinderHistograms:
         self._histograms: list[NDArray[np.float32]] = []
         self._known = floor is not None and height is not None
 
-    def add(self, vertices: Array, faces: Faces | None) -> Array:
-        """Take the next frame; gives its vertex weights (v,)."""
+    def add(self, vertices: Array, faces: Faces | None) -> tuple[Array, Array | None]:
+        """Take the next frame; gives its vertex weights (v,) and the running sum of ``mesh_areas`` (m,)."""
         frame = len(self.centres)
+        running: Array | None = None
         if faces is None:
             weights, edge = np.ones(len(vertices)), 0.0
         else:
-            weights, edge = vertex_areas(vertices, faces)
-        total = float(weights.sum())
+            weights, running, edge = mesh_areas(vertices, faces)
+        x, y, total = ground_centroid(vertices, weights)
         if not total > 0:
             raise InputError(f"Frame {frame} has a surface without any area: leave it out or capture it again.")
-        # Not by BLAS, whose threads would only wait for each other on so little, and whose sums depend on their number.
-        x, y = np.einsum("v,vk->k", weights, vertices[:, :2])
-        self.centres.append((float(x) / total, float(y) / total))
+        self.centres.append((x, y))
         low, high = _ends(vertices[:, 2])
         self.lows.append(low)
         self.highs.append(high)
@@ -70,7 +64,7 @@ class CylinderHistograms:
             self._vertices_held += len(vertices)
             if self._vertices_held > BUFFERED:
                 self._settle()
-        return np.asarray(weights)
+        return weights, running
 
     def features(self) -> Features:
         """Give the features of all frames taken."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from pathlib import Path
 
-from app.formats.images import natural_key, read_bytes
+from app.formats.images import natural_key
 from app.formats.meshes import read_mesh
-from app.formats.meshfile import check_mesh
+from app.formats.meshfile import check_mesh, mesh_bytes
 from app.formats.obj import read_obj
 from app.formats.ply import read_ply
 from app.formats.tvm.dress import obj_dress
@@ -42,7 +42,7 @@ class FolderFrames(MeshFrames):
         if kind not in (".obj", ".ply", ".glb"):
             mesh = read_mesh(path)
             return FrameMesh(mesh.vertices, mesh.faces, mesh.colors)
-        data = read_bytes(path).tobytes()
+        data = mesh_bytes(path)
         if kind == ".glb":
             return read_dressed_glb(path, data, self._room)
         if kind == ".ply":

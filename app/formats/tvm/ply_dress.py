@@ -50,9 +50,12 @@ def _at_corners(tables: dict[str, dict[str, Any]]) -> Found | None:
     if polygons is None or "texcoord" not in face:
         return None
     pairs = face["texcoord"]
-    counts = np.array([len(polygon) for polygon in polygons], np.int64)
-    flat = np.concatenate([np.asarray(row, np.float64) for row in pairs]) if len(pairs) else np.zeros(0)
-    if [len(row) for row in pairs] != (2 * counts).tolist():
+    counts = _lengths(polygons)
+    if isinstance(pairs, np.ndarray):
+        flat = pairs.reshape(-1).astype(np.float64)
+    else:
+        flat = np.concatenate([np.asarray(row, np.float64) for row in pairs]) if len(pairs) else np.zeros(0)
+    if not np.array_equal(_lengths(pairs), 2 * counts):
         raise ValueError("texcoord")
     starts = np.cumsum(np.r_[0, counts[:-1]])
     if len(counts) and (counts == counts[0]).all():
@@ -61,6 +64,13 @@ def _at_corners(tables: dict[str, dict[str, Any]]) -> Found | None:
         corners = fan([list(range(a, a + n)) for a, n in zip(starts.tolist(), counts.tolist(), strict=True)])
     number = np.asarray(face.get("texnumber", np.zeros(len(counts))), np.int64)
     return flat.reshape(-1, 2), corners, np.repeat(number, np.maximum(counts - 2, 0))
+
+
+def _lengths(lists: Any) -> NDArray[np.int64]:
+    """How long each list is; equally long ones come as one array."""
+    if isinstance(lists, np.ndarray):
+        return np.full(len(lists), lists.shape[1], np.int64)
+    return np.array([len(each) for each in lists], np.int64)
 
 
 def _at_vertices(tables: dict[str, dict[str, Any]], mesh: MeshFile) -> Found:

@@ -27,7 +27,7 @@ def features(document: Document, sequence: CapturedSequence) -> Stage:
         needs = (*needs, features(document, first))
     inputs = (source_of(document, sequence), choice.features, choice.height, lead)
     weight = 0.004 * sequence.frame_count + 0.5
-    return Stage(f"features/{sequence.id}", f"Reading {sequence.name}", _features, inputs, needs, weight=weight)
+    return Stage(f"features/{sequence.id}", f"Reading {sequence.name}", _features, inputs, needs, version=2, weight=weight)
 
 
 def distances(document: Document, sequence: CapturedSequence) -> Stage:
@@ -125,10 +125,12 @@ class _Counter:
             self.faces.append(len(mesh.faces))
             self.coloured += mesh.colours is not None
             self.textured += mesh.texture is not None
-            # Column by column: several times quicker than along the short axis.
-            columns = mesh.vertices.T
-            self.low = np.minimum(self.low, [column.min() for column in columns])
-            self.high = np.maximum(self.high, [column.max() for column in columns])
+            # Sixteen vertices a row: several times quicker than along the short axis.
+            even = len(mesh.vertices) // 16 * 16
+            for rows in (mesh.vertices[:even].reshape(-1, 48), mesh.vertices[even:]):
+                if len(rows):
+                    self.low = np.minimum(self.low, rows.min(axis=0).reshape(-1, 3).min(axis=0))
+                    self.high = np.maximum(self.high, rows.max(axis=0).reshape(-1, 3).max(axis=0))
             yield mesh.vertices, mesh.faces
 
     def statistics(self, fps: float, height: float) -> Statistics:
