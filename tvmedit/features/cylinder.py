@@ -88,7 +88,7 @@ def _place(
 def _counted(
     vertices: Array, weights: Array, origin: tuple[float, float, float], height: float, arc: Array
 ) -> NDArray[np.float32]:  # pragma: no cover - compiled
-    # Padded: one column more on either side of the azimuth, and one more row and layer: neighbours need no test for the end.
+    # Padded by a column on either side of the azimuth, a row and a layer: neighbours need no test for the end.
     row = AZIMUTH_BINS + 2
     layer = (RADIUS_BINS + 1) * row
     bins = np.zeros((HEIGHT_BINS + 1) * layer)

@@ -27,7 +27,9 @@ def features(document: Document, sequence: CapturedSequence) -> Stage:
         needs = (*needs, features(document, first))
     inputs = (source_of(document, sequence), choice.features, choice.height, lead)
     weight = 0.004 * sequence.frame_count + 0.5
-    return Stage(f"features/{sequence.id}", f"Reading {sequence.name}", _features, inputs, needs, version=2, weight=weight)
+    return Stage(
+        f"features/{sequence.id}", f"Reading {sequence.name}", _features, inputs, needs, version=2, weight=weight
+    )
 
 
 def distances(document: Document, sequence: CapturedSequence) -> Stage:
