@@ -15,13 +15,16 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
+from imitation.cameras.consent import ENOUGH, Consent, Verified, consent, least, worst_pair
 from imitation.cameras.features import Features, Matches
 from imitation.cameras.follow import Tracks
 from imitation.geometry.projection import Array
-from imitation.progress import Progress, silent
+from imitation.progress import Progress, part, silent
 
+ATTEMPTS = 3  # models that are mapped at most, each begun where those before contradict their pictures most
 GUESS = 1.2  # focal length over the longest side where nothing is known, as the mapper's own default
 CENTRE = 0.5
+BESIDE = 2  # key frames apart: pairs that are asked whether a model agrees with them
 
 
 @attrs.frozen(eq=False)
@@ -53,13 +56,15 @@ def _database(
     size: tuple[int, int],
     focal: float | None,
     tick: Callable[[float], None],
-) -> None:
+) -> Verified:
+    """Write features and verified matches; give the pixels of those, for pairs of neighbouring key frames."""
     camera = pycolmap.Camera.create_from_model_name(1, "SIMPLE_PINHOLE", focal or GUESS * max(size), *size)
     camera.has_prior_focal_length = focal is not None
     options = pycolmap.TwoViewGeometryOptions()
     options.ransac.random_seed = 0
     options.ransac.max_error = 3.0
     places = [np.concatenate([f.pixels, tracks.pixels[f.frame]]) for f in features]
+    kept: Verified = {}
     database = pycolmap.Database.open(path)
     try:
         database.write_camera(camera, True)
@@ -84,8 +89,12 @@ def _database(
             )
             database.write_matches(i + 1, j + 1, pair.astype(np.uint32))
             database.write_two_view_geometry(i + 1, j + 1, verified)
+            if j - i <= BESIDE:
+                sure = np.asarray(verified.inlier_matches, np.int64).reshape(-1, 2)
+                kept[i, j] = places[i][sure[:, 0]], places[j][sure[:, 1]]
     finally:
         database.close()
+    return kept
 
 
 def _corners(first: Features, second: Features, tracks: Tracks) -> Matches:
@@ -95,8 +104,10 @@ def _corners(first: Features, second: Features, tracks: Tracks) -> Matches:
     return pairs
 
 
-def _options(pycolmap: Any, focal: float | None) -> Any:
+def _options(pycolmap: Any, focal: float | None, begin: tuple[int, int] | None = None) -> Any:
     options = pycolmap.IncrementalPipelineOptions()
+    if begin is not None:
+        options.init_image_id1, options.init_image_id2 = begin[0] + 1, begin[1] + 1
     options.num_threads = 1
     options.random_seed = 0
     options.extract_colors = False
@@ -160,8 +171,13 @@ def map_key_frames(
 
     Features carry the wide pairs, followed corners the near ones, where blur or grass leaves few features alike.
 
-    Of several models the one with most frames is taken. The mapper runs in a thread of its own with one thread of
-    work and a fixed seed; it stops between two images, which may take longer than ``progress`` asks for.
+    Of several models the one with most frames is taken. A frame that is posed by far points alone has no scale: what it
+    then adds keeps a wrong one, and near points are thrown away as outliers, with small residuals. So a model is asked
+    whether it obeys the matches of neighbouring key frames, which need no scale; where it does not, another is begun at
+    the pair that it contradicts most, and the one that obeys best is given.
+
+    The mapper runs in a thread of its own with one thread of work and a fixed seed; it stops between two images, which
+    may take longer than ``progress`` asks for.
     """
     import pycolmap
 
@@ -172,7 +188,7 @@ def map_key_frames(
         with tempfile.TemporaryDirectory(prefix="cameras-", ignore_cleanup_errors=True) as name:
             folder = Path(name)
             (folder / "models").mkdir()
-            _database(
+            verified = _database(
                 pycolmap,
                 folder / "features.db",
                 features,
@@ -180,15 +196,40 @@ def map_key_frames(
                 tracks,
                 size,
                 focal,
-                lambda part: report(0.4 * part),
+                lambda done: report(0.4 * done),
             )
-            models = _run(pycolmap, folder, _options(pycolmap, focal), len(features), report)
+            names, images = [f.frame for f in features], {f.frame: f for f in features}
+            begin: tuple[int, int] | None = None
+            tried: list[tuple[int, int]] = []
+            best: tuple[Model, Consent] | None = None
+            for attempt in range(ATTEMPTS):
+                share = part(report, 1 - 0.6 / 3**attempt, 1 - 0.2 / 3**attempt)
+                mapped = _largest(_run(pycolmap, folder, _options(pycolmap, focal, begin), len(features), share))
+                if mapped is not None:
+                    model = _read(mapped, images)
+                    obeyed = consent(model.focal, model.poses, names, verified, (np.array(size) - 1) / 2)
+                    # As many frames, to a tenth, and no pair of pictures contradicts it as much.
+                    if best is None or (
+                        len(model.poses) >= 0.9 * len(best[0].poses) and least(obeyed) > least(best[1])
+                    ):
+                        best = model, obeyed
+                if best is None:
+                    return None
+                begin = worst_pair(best[1], verified, tried)
+                if least(best[1]) >= ENOUGH or begin is None:
+                    break
+                tried.append(begin)
+            return best[0] if best is not None else None
     finally:
         pycolmap.logging.minloglevel = before
-    if not models:
-        return None
-    best = max(sorted(models.items()), key=lambda item: (item[1].num_reg_images(), item[1].num_points3D(), -item[0]))
-    return _read(best[1], {f.frame: f for f in features})
+
+
+def _largest(models: dict[int, Any]) -> Any:
+    """Of the mapper's models the one with most frames, then points; None where there is none."""
+    order = sorted(models.items())
+    return (
+        max(order, key=lambda item: (item[1].num_reg_images(), item[1].num_points3D(), -item[0]))[1] if order else None
+    )
 
 
 def _run(pycolmap: Any, folder: Path, options: Any, count: int, report: Progress) -> dict[int, Any]:
@@ -218,7 +259,7 @@ def _run(pycolmap: Any, folder: Path, options: Any, count: int, report: Progress
     try:
         while thread.is_alive():
             thread.join(0.1)
-            report(0.4 + 0.6 * min(1.0, registered[0] / count))
+            report(min(1.0, registered[0] / count))
     except BaseException:
         token.cancel()
         thread.join()
