@@ -1,4 +1,16 @@
-"""What is wrong with a motion: where it drifts from the video, where the mesh is stretched, where it sinks."""
+"""What is wrong with a motion: where it drifts from the video, where the mesh is stretched, where it sinks.
+
+What is warned of, and why no more than that: a list in which every small thing stands is not read.
+
+- A point drifts where it is over *both* what is seen (``DRIFT``) and what stands out of this clip (``LOOSE`` times the
+  median of all its points and frames): pairs that fit a character loosely are everywhere as loose, and nothing is to
+  be found by going from one to the next. Above ``TELLING`` it drifts whatever the others do, so that a motion which is
+  wrong as a whole is not excused by its own median.
+- Hidden, unsure and user-moved stretches count as nothing: there is no place there to drift from.
+- What is shorter than ``BRIEF`` seconds is warned of only at ``FLASH`` times the limit: the eye does not see it else.
+- A point, the mesh, the ground are one problem each, at its worst span; the others are counted. They mostly have one
+  cause (a pair, a click), and the next check tells whether they went with it.
+"""
 
 from __future__ import annotations
 
@@ -17,6 +29,12 @@ from imitation.errors import InputError
 Kind = Literal["drift", "stretch", "ground", "background", "ambiguous"]
 DRIFT = 3.0 / 540.0
 """Share of the picture's height that a vertex may be from its point: 3 pixels of a 540p film, which is seen."""
+LOOSE = 6.0
+"""Medians that a distance may have: of errors spread evenly round the points, one in a billion is farther away."""
+TELLING = 3 * DRIFT
+"""Share of the picture's height that no vertex may be from its point: about the width of a paw."""
+BRIEF, FLASH = 0.1, 2.0
+"""Seconds of which little is seen, and how many times over the limit it must be in them."""
 STRETCH = 1.35
 """Edges a third longer, or as much shorter, are seen as such on fur and cloth."""
 SUNK = 0.02
@@ -33,13 +51,13 @@ JOIN = 2
 
 @attrs.frozen
 class Problem:
-    """A span of frames in which something is over its limit.
+    """Something that is over its limit, at the span of frames where it is so most.
 
     Attributes
     ----------
     kind : what. subject : the point or limb concerned, empty where it is the mesh. vertex : of the mesh.
     first, last : frames. worst : the frame to look at. value, limit : what was measured there, and what may be.
-    text : a sentence for people.
+    text : a sentence for people. more : other spans (first, last) in which it is over its limit, in their order.
     """
 
     kind: Kind
@@ -51,6 +69,7 @@ class Problem:
     value: float
     limit: float
     text: str
+    more: tuple[tuple[int, int], ...] = ()
 
     @property
     def severity(self) -> float:
@@ -64,8 +83,8 @@ class Check:
 
     Attributes
     ----------
-    problems : the worst first.
-    drift : track id -> (n,) pixels, NaN where the point is not surely seen or the user moved its vertex.
+    problems : the worst first, one for each point and each kind.
+    drift : track id -> (n,) pixels, NaN where the point is hidden, not sure, or the user moved its vertex.
     limit : pixels.
     stretch : (n, 2) length of edges over that at rest, which all but one vertex in a hundred keep within.
     sunk : (n,) deepest place below the ground, world units; zeros where no ground is known.
@@ -78,10 +97,11 @@ class Check:
     sunk: Array
 
 
-def drift_limit(session: Session) -> float:
-    """Pixels that a vertex may be from its point."""
+def drift_limit(session: Session, typical: float = 0.0) -> float:
+    """Pixels that a vertex may be from its point, where ``typical`` is the median distance in this motion."""
     clip = session.document.clip
-    return max(DRIFT * clip.height, 1.0) if clip is not None else 3.0
+    seen = max(DRIFT * clip.height, 1.0) if clip is not None else 3.0
+    return max(seen, min(LOOSE * typical, seen * TELLING / DRIFT))
 
 
 def drift_in_frame(session: Session, character_id: str, frame: int, vertices: Array) -> dict[int, float]:
@@ -126,15 +146,17 @@ def check_motion(session: Session, character_id: str, *, heard: Callable[[], obj
         if deep is not None:
             where[frame, 1] = int(np.argmax(deep))
             sunk[frame] = deep[where[frame, 1]]
-    drift = _drift(character, solved, animated)
-    limit = drift_limit(session)
+    drift = _drift(session, character, solved, animated)
+    known = np.concatenate([each[np.isfinite(each)] for each in drift.values()] or [np.zeros(0)])
+    limit = drift_limit(session, float(np.median(known)) if len(known) else 0.0)
+    brief = BRIEF * (document.clip.fps if document.clip is not None else 0.0)
     names = {track.id: track.name for track in document.tracks}
     height = float(np.ptp(solved.rest[:, 2])) or 1.0  # type: ignore[attr-defined]
     found = _drifting(drift, limit, names, character)
     found += _stretched(stretch, where[:, 0])
     found += _sinking(sunk, SUNK * height, where[:, 1], metric=world.metric)
     found += _colliding(session, character, metric=world.metric)
-    found += _ambiguous(session, character)
+    found = _gathered([each for each in found if _is_seen(each, brief)] + _ambiguous(session, character))
     order = sorted(found, key=lambda each: (-each.severity, each.first, each.subject))
     return Check(tuple(order), drift, limit, stretch, sunk)
 
@@ -169,12 +191,16 @@ def _deep(value: float, metric: bool) -> str:
     return f"{100 * value:.1f} cm" if metric else f"{value:.2g} units"
 
 
-def _drift(character: Character, solved: Any, animated: Animation) -> dict[str, Array]:
+def _drift(session: Session, character: Character, solved: Any, animated: Animation) -> dict[str, Array]:
     from imitation.motion.rays import project_points
 
     keys = solved.keys
     away = project_points(solved.cameras, animated.vertices[:, keys.vertices]) - keys.pixels
     sure = keys.observed & (keys.confidence >= SURE)
+    for number, name in enumerate(keys.names):
+        followed: Any = session.ready(session.stages.track(name))
+        if followed is not None and len(followed.state) == len(sure):
+            sure[:, number] &= followed.state == "visible"
     pixels = np.where(sure, np.hypot(away[..., 0], away[..., 1]), np.nan)
     moved = {vertex for edit in character.edits.values() for vertex, move in edit.moves.items() if not move.muted}
     columns = {name: pixels[:, number] for number, name in enumerate(keys.names)}
@@ -196,6 +222,30 @@ def spans(bad: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 def _when(first: int, last: int) -> str:
     return f"frame {first}" if first == last else f"frames {first}–{last}"
+
+
+def _is_seen(problem: Problem, brief: float) -> bool:
+    """Whether it lasts longer than ``brief`` frames, or is so large that it is seen in fewer."""
+    return problem.last - problem.first + 1 > brief or problem.severity >= FLASH
+
+
+def _gathered(found: list[Problem]) -> list[Problem]:
+    """One problem for each point and kind: the worst, with the other spans."""
+    groups: dict[tuple[str, str, int], list[Problem]] = {}
+    for each in found:
+        vertex = each.vertex if each.subject else -1  # two points may bear one name; the mesh is worst here or there
+        groups.setdefault((each.kind, each.subject, vertex), []).append(each)
+    return [_with_others(group) for group in groups.values()]
+
+
+def _with_others(group: list[Problem]) -> Problem:
+    worst = max(group, key=lambda each: (each.severity, -each.first))
+    others = tuple((each.first, each.last) for each in group if each is not worst)
+    if not others:
+        return worst
+    when = _when(worst.first, worst.last)
+    many = "once more" if len(others) == 1 else f"{len(others)} times more"
+    return attrs.evolve(worst, more=others, text=worst.text.replace(when, f"{when} and {many}", 1))
 
 
 def _drifting(

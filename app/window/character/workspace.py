@@ -291,7 +291,8 @@ class CharacterWorkspace(Workspace):
         assert project is not None
         self.mesh.show_gizmo(self.placing.gizmo(vertices) if self.placing is not None else None)
         away = drift_in_frame(project.session, character.id, self.frame, vertices)
-        limit = drift_limit(project.session)
+        check = self.checks.check if self.checks is not None and self.checks.fresh else None
+        limit = drift_limit(project.session) if check is None else check.limit
         world = project.result(project.session.stages.world)
         made = handles(
             project,
@@ -305,7 +306,6 @@ class CharacterWorkspace(Workspace):
         )
         self.mesh.show_handles(made)
         if not self.mesh.dragging:
-            check = self.checks.check if self.checks is not None and self.checks.fresh else None
             stretch = check.stretch[self.frame] if check is not None and self.frame < len(check.stretch) else None
             self.inspector.show_fit(away, limit, None if stretch is None else (float(stretch[0]), float(stretch[1])))
 

@@ -91,6 +91,54 @@ def test_drift_is_what_is_seen_in_a_frame(session: Session) -> None:
     assert min(shifted.values()) > max(found.values())
 
 
+@pytest.mark.parametrize(
+    ("usual", "worse", "frames", "found"),
+    [
+        (0.1, 1.2, 2, 0),  # a little over, for a moment
+        (0.1, 1.2, 4, 1),  # the same, long enough to be seen
+        (0.1, 2.5, 1, 1),  # a flash
+        (1.0, 1.3, 4, 0),  # pairs that are as loose everywhere
+        (1.0, 3.5, 4, 1),  # one that stands out of them
+    ],
+)
+def test_what_of_a_drift_is_warned_of(
+    session: Session, monkeypatch: pytest.MonkeyPatch, usual: float, worse: float, frames: int, found: int
+) -> None:
+    """Distances in multiples of what is seen, one point farther for some frames, twice: one problem, or none."""
+    limit = checking.drift_limit(session)
+    count = len(animated(session))
+    drift = {track: np.full(count, usual * limit) for track in session.document.characters[0].pairs}
+    first = next(iter(drift))
+    for begin in (2, 2 + frames + 4):
+        drift[first][begin : begin + frames] = worse * limit
+    assert 2 + 2 * frames + 4 < count
+    monkeypatch.setattr(checking, "_drift", lambda *_: drift)
+    drifting = [each for each in checking.check_motion(session, only(session)).problems if each.kind == "drift"]
+    assert len(drifting) == found
+    if found:
+        assert (drifting[0].first, drifting[0].last, len(drifting[0].more)) == (2, 1 + frames, 1)
+        assert "once more" in drifting[0].text
+
+
+def test_a_motion_that_is_wrong_as_a_whole_is_not_excused(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All points far from the video, evenly: each is warned of."""
+    limit, count = checking.drift_limit(session), len(animated(session))
+    pairs = session.document.characters[0].pairs
+    monkeypatch.setattr(checking, "_drift", lambda *_: {track: np.full(count, 4 * limit) for track in pairs})
+    problems = checking.check_motion(session, only(session)).problems
+    assert sum(each.kind == "drift" for each in problems) == len(pairs)
+
+
+def test_each_point_and_kind_is_one_problem(session: Session) -> None:
+    """And the hidden stretches of a point are no drift."""
+    check = checking.check_motion(session, only(session))
+    named = [(each.kind, each.subject, each.vertex if each.subject else -1) for each in check.problems]
+    assert len(set(named)) == len(named)
+    for track, pixels in check.drift.items():
+        state = session.result(session.stages.track(track)).state
+        assert np.isnan(pixels[state != "visible"]).all()
+
+
 def test_colours_say_where(session: Session) -> None:
     """At rest all is grey; a stretched mesh is hot, a squeezed one cold; below the ground is hot."""
     vertices = animated(session)
