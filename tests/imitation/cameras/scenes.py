@@ -125,12 +125,18 @@ def handheld(
     return CameraPath(K=Ks, R=Rs, T=Ts)
 
 
-def paint(parts: list[Rectangle], camera: Camera, size: tuple[int, int]) -> Pixels:
-    """The picture of the rectangles, two samples a pixel and direction."""
+def paint(parts: list[Rectangle], camera: Camera, size: tuple[int, int], *, one_sided: bool = False) -> Pixels:
+    """The picture of the rectangles, two samples a pixel and direction.
+
+    ``one_sided`` leaves out those that turn their back to the camera: the inside of a box's farther face is painted
+    after its top, and would stand before it.
+    """
     width, height = size
     double = np.array([[2.0, 0, 0.5], [0, 2.0, 0.5], [0, 0, 1.0]])  # pixel centres stay at integers
     canvas = np.full((2 * height, 2 * width, 3), 128, np.uint8)
     for part in parts:
+        if one_sided and (part.corner - camera.centre) @ np.cross(part.right, part.down) <= 0:
+            continue
         rows, columns = part.texture.shape[:2]
         edges = np.stack([part.right / columns, part.down / rows, part.corner], axis=1)
         edges[:, 2] += 0.5 * (edges[:, 0] + edges[:, 1])
@@ -152,6 +158,7 @@ def film(
     gain: float = 0.004,
     blob: bool = False,
     seed: int = 0,
+    one_sided: bool = False,
 ) -> Film:
     """Frames with sensor noise, a slowly drifting brightness and, where asked, a moving textured blob with masks."""
     random = np.random.default_rng(seed + 2000)
@@ -162,7 +169,7 @@ def film(
     yy, xx = np.mgrid[: fur.shape[0], : fur.shape[1]]
     round_ = ((xx / fur.shape[1] - 0.5) ** 2 + (yy / fur.shape[0] - 0.5) ** 2) < 0.25
     for t in range(len(cameras)):
-        picture = paint(parts, cameras[t], size)
+        picture = paint(parts, cameras[t], size, one_sided=one_sided)
         mask = np.zeros((height, width), bool)
         if blob:
             left = int(width * (0.1 + 0.5 * t / max(1, len(cameras) - 1)))

@@ -173,4 +173,4 @@ def filmed_room(
     """Film the room from the side; a textured blob passes in front of it."""
     parts, weakly = parts_of(seed, textures)
     cameras = lateral_camera(frames, seed=seed, size=size)
-    return World(film(parts, cameras, size, blob=blob, seed=seed), parts, weakly, size)
+    return World(film(parts, cameras, size, blob=blob, seed=seed, one_sided=True), parts, weakly, size)
