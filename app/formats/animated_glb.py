@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from app.formats.glb import VERTICES, base_primitive, nodes, scene
 from app.formats.gltf import Gltf, GltfWriter, read_gltf, to_srgb
+from app.formats.gltf_animation import keys_are_frames
 from app.formats.meshfile import to_int32, y_up_to_z_up, z_up_to_y_up
 from app.formats.posed_glb import PosedGltf
 from app.formats.sequence import MeshSequence, mesh_sequence, vertex_normals
@@ -100,7 +101,7 @@ def read_animated_glb(path: Path, data: bytes) -> MeshSequence:
 
 
 def is_shape_animation(gltf: Gltf) -> bool:
-    """Whether all that moves are the morph targets of one mesh of one primitive, which no joint holds."""
+    """Whether all that moves are the morph targets of one mesh of one primitive, key by key, which no joint holds."""
     try:
         channels = [channel for entry in gltf.items("animations")[:1] for channel in entry["channels"]]
         targets = {(channel["target"].get("node"), channel["target"]["path"]) for channel in channels}
@@ -108,7 +109,10 @@ def is_shape_animation(gltf: Gltf) -> bool:
         if len(targets) != 1 or len(drawn) != 1 or "skin" in drawn[0]:
             return False
         (node, path), primitives = targets.pop(), gltf.items("meshes")[drawn[0]["mesh"]]["primitives"]
-        return path == "weights" and len(primitives) == 1 and gltf.items("nodes")[node] is drawn[0]
+        whole = path == "weights" and len(primitives) == 1 and gltf.items("nodes")[node] is drawn[0]
+        entry = gltf.items("animations")[0]
+        # A few keys far apart, which others write, say nothing of the frames between them.
+        return whole and keys_are_frames(gltf, entry["samplers"][entry["channels"][0]["sampler"]])
     except (ValueError, KeyError, IndexError, TypeError, AttributeError):
         return False
 
@@ -137,7 +141,8 @@ def shape_animation(gltf: Gltf) -> MeshSequence:
         raise
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, OverflowError, StopIteration) as error:
         raise InputError(f"The file {gltf.name} is not a whole GLB or glTF file: export it again.") from error
-    stated = gltf.tree["asset"].get("extras", {})
+    asset = gltf.tree.get("asset")
+    stated = asset.get("extras") if isinstance(asset, dict) else None
     fps = stated.get("fps") if isinstance(stated, dict) else None
     step = float(np.median(np.diff(times))) if len(times) > 1 else 1 / 25
     return mesh_sequence(frames, faces, _fraction(fps, step), colors, gltf.name)

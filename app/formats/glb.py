@@ -191,4 +191,6 @@ def _colors(gltf: Gltf, primitive: dict[str, Any], count: int) -> NDArray[np.uin
     if "COLOR_0" not in primitive["attributes"]:
         return None if (factor == 1).all() else to_srgb(np.tile(factor, (count, 1)))
     values = gltf.accessor(primitive["attributes"]["COLOR_0"])[:, :3]
+    if values.shape != (count, 3):
+        raise ValueError("colours")
     return to_srgb(values * factor)

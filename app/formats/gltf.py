@@ -97,9 +97,10 @@ def read_gltf(path: Path, data: bytes) -> Gltf:
     try:
         tree, binary = _split(data)
         buffers = [_buffer(path.parent, entry, binary) for entry in tree.get("buffers", [])]
+        needed = [str(extension) for extension in tree.get("extensionsRequired", [])]
     except (ValueError, KeyError, TypeError, AttributeError, struct.error, OSError) as error:
         raise InputError(f"The file {name} is not a whole GLB or glTF file: export it again.") from error
-    for extension in tree.get("extensionsRequired", []):
+    for extension in needed:
         if extension in _UNREADABLE:
             raise InputError(f"The file {name} is compressed by {extension}, which is not read: export it without.")
     return Gltf(tree, buffers, name)

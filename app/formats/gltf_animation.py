@@ -152,6 +152,14 @@ def keep_animation(gltf: Gltf, wanted: str | None) -> str:
     return f"{gltf.name} has {len(names)} animations ({listed}): {taken} is taken; name another one when adding it."
 
 
+def keys_are_frames(gltf: Gltf, sampler: dict[str, Any]) -> bool:
+    """Whether a sampler's keys are the frames themselves: at a stated or an even rate, with nothing curved between."""
+    if sampler.get("interpolation", "LINEAR") not in ("LINEAR", "STEP"):
+        return False
+    times = gltf.accessor(sampler["input"])[:, 0].astype(np.float64)
+    return _stated(gltf) is not None or _even_rate(times) is not None
+
+
 def _moves_something(entry: dict[str, Any]) -> bool:
     try:
         targets = [channel["target"] for channel in entry["channels"]]

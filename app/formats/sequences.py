@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+import tokenize
 import zipfile
 from collections.abc import Callable
 from fractions import Fraction
@@ -25,6 +26,13 @@ from imitation.errors import InputError
 from imitation.progress import Progress, part, silent
 
 Form = Literal["ply", "obj", "glb", "usd", "npz"]
+NPZ_DAMAGE = (
+    OSError, EOFError, ValueError, KeyError, IndexError, TypeError, AttributeError, ArithmeticError, MemoryError,
+    SyntaxError, RecursionError, NotImplementedError, RuntimeError, tokenize.TokenError, zipfile.BadZipFile,
+    zipfile.LargeZipFile,
+)  # fmt: skip
+"""What reading a damaged archive comes to."""
+DECOMPRESSORS = ("zlib", "_lzma", "lzma", "_bz2", "bz2")
 FORMS: tuple[Form, ...] = ("ply", "obj", "glb", "usd", "npz")
 
 
@@ -179,11 +187,16 @@ def _write_npz(path: Path, sequence: MeshSequence) -> None:
 
 def _read_npz(path: Path) -> MeshSequence:
     def load(read: Callable[[str], np.ndarray], names: set[str]) -> MeshSequence:
+        def numbers(name: str) -> np.ndarray:
+            if (array := read(name)).dtype.kind not in "fiu":
+                raise ValueError(name)
+            return array
+
         if "vertices" in names:
-            vertices = read("vertices")
+            vertices = numbers("vertices")
         else:  # positions in a box: vertex = center + scale * position
-            vertices = read("center") + read("scale") * read("positions").astype(np.float64)
-        rate = read("fps").reshape(-1)
+            vertices = numbers("center") + numbers("scale") * numbers("positions").astype(np.float64)
+        rate = numbers("fps").reshape(-1)
         fps = (
             Fraction(int(rate[0]), int(rate[1])) if len(rate) == 2 else Fraction(float(rate[0])).limit_denominator(1001)
         )
@@ -198,5 +211,9 @@ def _read_npz(path: Path) -> MeshSequence:
             return load(archive.__getitem__, set(archive.files))
     except InputError:
         raise
-    except (OSError, ValueError, KeyError, ZeroDivisionError, zipfile.BadZipFile) as error:
+    except Exception as error:
+        # Damage ends in the exceptions of the zip, its decompressors, a header that is a line of Python, a promise of
+        # more memory than there is, or arrays of another kind; what is none of these is ours and goes on.
+        if not isinstance(error, NPZ_DAMAGE) and type(error).__module__ not in DECOMPRESSORS:
+            raise
         raise InputError(f"The file {path.name} is not an npz of vertices, faces and fps: export it again.") from error

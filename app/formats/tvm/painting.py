@@ -26,8 +26,9 @@ def painted(mesh: FrameMesh) -> FrameMesh:
         at = texture.coordinates[corners[known]]
         picture = _picture(path, path.stat().st_mtime_ns)
         height, width = picture.shape[:2]
-        # Outside 0 to 1 the picture repeats.
-        u, v = at[:, 0] % 1.0, at[:, 1] % 1.0
+        # Outside 0 to 1 the picture repeats; coordinates that are no numbers are its corner.
+        with np.errstate(invalid="ignore"):
+            u, v = np.nan_to_num(at % 1.0).T
         column = np.minimum((u * width).astype(np.int64), width - 1)
         row = np.minimum(((1.0 - v) * height).astype(np.int64), height - 1)
         colours[vertices[known]] = picture[row, column]

@@ -14,7 +14,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.formats.tvm import FrameMesh, open_mesh_frames, write_mesh_frames
+from app.formats.images import write_image
+from app.formats.sequences import read_sequence, write_sequence
+from app.formats.tvm import FrameMesh, Texture, open_mesh_frames, painted, write_mesh_frames
 from imitation.errors import InputError
 
 MESH = FrameMesh(
@@ -77,6 +79,86 @@ def test_an_npz_whose_headers_are_no_python(header: bytes, tmp_path: Path) -> No
     (tmp_path / "film.npz").write_bytes(packed.getvalue())
     with pytest.raises(InputError, match="not an npz of vertices"):
         open_mesh_frames(tmp_path / "film.npz")
+
+
+@pytest.mark.parametrize("part", ["vertices", "faces", "fps", "colors", "name"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"no array",
+        b"\x93NUMPY\x01\x00" + struct.pack("<H", 10) + b"(((((((((\n",
+        b"\x93NUMPY\x01\x00\x56\x00{'descr': '<f4', 'fortran_order': False, 'shape': (14999999999985, 3, 3)}".ljust(96),
+        np.zeros(0),
+        np.array(b"x"),
+        np.array("x"),
+        np.array(np.nan),
+        np.full((2, 2), 7 + 1j),
+        np.zeros((2, 4, 3, 1)),
+    ],
+)
+def test_a_character_npz_of_any_content(part: str, content: Any, tmp_path: Path) -> None:
+    """One part is something else: read where it does not matter, or refused in one sentence."""
+    places = np.zeros((2, 4, 3), np.float32) + MESH.vertices
+    write_sequence(tmp_path / "good.npz", places, MESH.faces, 25, colors=MESH.colours, name="wolf")
+    if isinstance(content, np.ndarray):
+        packed = io.BytesIO()
+        np.lib.format.write_array(packed, content)
+        content = packed.getvalue()
+    with zipfile.ZipFile(tmp_path / "good.npz") as good, zipfile.ZipFile(tmp_path / "film.npz", "w") as spoilt:
+        for name in good.namelist():
+            spoilt.writestr(name, content if name == f"{part}.npy" else good.read(name))
+    with contextlib.suppress(InputError):
+        assert len(read_sequence(tmp_path / "film.npz")) == 2
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_a_character_npz_whose_compressed_bytes_are_spoilt(method: int, tmp_path: Path) -> None:
+    """Each decompressor has exceptions of its own."""
+    places = np.random.default_rng(0).random((2, 400, 3)).astype(np.float32)
+    packed = io.BytesIO()
+    np.lib.format.write_array(packed, places)
+    with zipfile.ZipFile(tmp_path / "film.npz", "w", method) as archive:
+        archive.writestr("vertices.npy", packed.getvalue())
+    data = bytearray((tmp_path / "film.npz").read_bytes())
+    data[200:1200] = bytes(range(250)) * 4
+    (tmp_path / "film.npz").write_bytes(data)
+    with pytest.raises(InputError, match="not an npz of vertices"):
+        read_sequence(tmp_path / "film.npz")
+
+
+def test_a_glb_whose_extensions_and_asset_are_no_tables(tmp_path: Path) -> None:
+    """What the file says of itself may be anything."""
+    places = np.stack([MESH.vertices, MESH.vertices + 1.0])
+    for key, value in (("extensionsRequired", 1.5), ("extensionsRequired", [3]), ("asset", 1), ("asset", None)):
+        write_sequence(tmp_path / "film.glb", places, MESH.faces, 25)
+        respelt(tmp_path / "film.glb", lambda tree, key=key, value=value: tree.update({key: value}))
+        with contextlib.suppress(InputError):
+            assert len(read_sequence(tmp_path / "film.glb")) == 2
+
+
+def test_a_glb_with_fewer_colours_than_vertices(tmp_path: Path) -> None:
+    """Colours of another length would fail where they are drawn."""
+    write_mesh_frames(tmp_path / "film", [MESH, MESH], form="glb", fps=25, count=2)
+
+    def shorten(tree: dict[str, Any]) -> None:
+        number = tree["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]
+        tree["accessors"][number]["count"] = 3
+
+    for path in sorted((tmp_path / "film").iterdir()):
+        respelt(path, shorten)
+    with pytest.raises(InputError, match="not a whole GLB"):
+        open_mesh_frames(tmp_path / "film")
+
+
+def test_texture_coordinates_that_are_no_numbers_are_painted(tmp_path: Path) -> None:
+    """The rest of the surface keeps its colours."""
+    write_image(tmp_path / "coat.png", np.full((4, 4, 3), (10, 200, 30), np.uint8))
+    where = np.array([[0.5, np.nan], [np.inf, 0.5], [0.2, 0.2], [1e300, -1e300]])
+    worn = Texture(where, MESH.faces, (tmp_path / "coat.png",), np.zeros(4, np.int32))
+    colours = painted(FrameMesh(MESH.vertices, MESH.faces, None, worn)).colours
+    assert colours is not None
+    assert colours.tolist() == [[10, 200, 30]] * 4
 
 
 def test_an_npz_of_no_rates(tmp_path: Path) -> None:
