@@ -46,13 +46,14 @@ def main() -> None:
     python = venv / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     if not works(python):
         make_venv(venv)
-    print("Installing what the project needs into", venv, flush=True)
+    # First what takes a second: who has to ask for system packages should not learn it after the downloads.
+    if sys.platform == "linux":
+        system_libraries()
+    print("Installing what the project needs into", venv, "(some minutes, 2 GB)", flush=True)
     command = [str(python), "-m", "pip", "install", "--quiet", "-c", "constraints.txt", "-e", ".[dev]"]
     if subprocess.run(command, check=False).returncode:
         stop("The packages could not be installed: check the network, then run the same command again.")
     compile_sources(python)
-    if sys.platform == "linux":
-        system_libraries()
 
 
 def compile_sources(python: Path) -> None:
@@ -76,7 +77,9 @@ def make_venv(venv: Path) -> None:
         return
     package = f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"
     if not install_packages([package]):
-        stop(f"Python's venv module is incomplete: install it with 'apt-get install {package}', then try again.")
+        stop(
+            f"Python's venv module is incomplete: install it with 'apt-get install {package}' as root, then try again."
+        )
     shutil.rmtree(venv, ignore_errors=True)
     subprocess.run(command, check=True)
 
@@ -90,7 +93,11 @@ def system_libraries() -> None:
     if install_packages(needed + wanted):
         return
     if needed:
-        stop(f"The window needs system libraries: install them with 'apt-get install {' '.join(needed + wanted)}'.")
+        packages = " ".join(needed + wanted)
+        stop(
+            "The program needs system libraries: install them as root with "
+            f"'apt-get install {packages}', then run the same command again."
+        )
     print(f"On this desktop the window also needs 'apt-get install {' '.join(wanted)}'.")
 
 

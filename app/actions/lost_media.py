@@ -53,8 +53,13 @@ class LostMedium:
 
 def lost_media(document: Document, folder: ProjectFolder, beside: Path | None = None) -> tuple[LostMedium, ...]:
     """Give what is missing, with the place where each lies now if that is beside the project, or in another folder."""
-    lost = [each for each in _all(document) if _missing(each.media, folder)]
+    lost = missing_media(document, folder)
     return tuple(attrs.evolve(each, found=look_for(each, beside or folder.path.parent)) for each in lost)
+
+
+def missing_media(document: Document, folder: ProjectFolder) -> tuple[LostMedium, ...]:
+    """Give what is missing, without looking for it."""
+    return tuple(each for each in _all(document) if _missing(each.media, folder))
 
 
 def look_for(lost: LostMedium, folder: Path) -> Path | None:
@@ -93,6 +98,21 @@ def relink(session: Session, lost: LostMedium, path: Path) -> None:
         edit = Edit(found.document, "Find the cameras again")
     session.apply(edit)
     session.runner.try_again()
+
+
+def find_in(session: Session, folder: Path) -> None:
+    """Say of all media that are missing and lie in a folder, or somewhat below it, that they lie there now.
+
+    Raises ``InputError`` when none of them does.
+    """
+    lost = lost_media(session.document, session.folder, folder)
+    found = [each for each in lost if each.found is not None]
+    if lost and not found:
+        names = ", ".join(each.name for each in lost)
+        raise InputError(f"{names} cannot be found in {folder}: name the folder that holds the same file.")
+    for each in found:
+        assert each.found is not None
+        relink(session, each, each.found)
 
 
 def _all(document: Document) -> Iterator[LostMedium]:

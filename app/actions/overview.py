@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from app.actions.limbs import ambiguous_limbs, limb_lines
+from app.actions.lost_media import missing_media
 from app.actions.session import Session
 from app.stages.results import World
 from app.stages.stage import Stage
@@ -39,6 +40,7 @@ def overview(session: Session) -> tuple[dict[str, Any], list[str]]:
             }
             for character in document.characters
         },
+        "missing": {each.owner: each.media.path for each in missing_media(document, session.folder)},
         "steps": steps,
     }
     return values, _lines(values, session)
@@ -94,6 +96,8 @@ def _lines(values: dict[str, Any], session: Session) -> list[str]:
         edited = len(character["edited_frames"])
         lines.append(f"character   {name}: {character['pairs']} pairs, {edited} edited frames ({character['mesh']})")
         lines += limb_lines(character["ambiguous"] or [])
+    for owner, place in values["missing"].items():
+        lines.append(f"missing     {owner}, expected at {place}: put it back, or set --find FOLDER")
     labels = {stage.name: stage.label for stage in session.stages.all()}
     for name, step in values["steps"].items():
         why = f": {step['why']}" if "why" in step else ""

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import errno
+import signal
 import sys
+import threading
 import traceback
 
 import click
@@ -12,6 +15,8 @@ from app.model.values import ModelError
 from imitation.errors import Cancelled, InputError, NoSolution
 
 DONE, USAGE, BAD_INPUT, NO_SOLUTION, BUG, STOPPED = 0, 2, 3, 4, 5, 130
+REFUSALS = (errno.EACCES, errno.EPERM, errno.EROFS, errno.ENAMETOOLONG, errno.ENOSPC, errno.EDQUOT, errno.EIO)
+"""What the system refuses for reasons that lie outside the program."""
 
 VERBS = {
     "demo": "app.commands.demo:demo",
@@ -68,16 +73,40 @@ def run(arguments: list[str]) -> int:
     except BrokenPipeError:
         sys.stderr.close()
         return DONE
+    except OSError as error:
+        if error.errno not in REFUSALS or error.filename is None:
+            return _bug(error, debug)
+        return _say(f"{error.filename} cannot be used: {error.strerror}.", BAD_INPUT, debug)
     except Exception as error:  # noqa: BLE001 - a person gets a sentence, not a traceback
-        said = f"{type(error).__name__}: {error}"
-        return _say(f"Motionwright has a bug ({said}); run again with --debug and report what it prints.", BUG, debug)
+        return _bug(error, debug)
     return DONE
 
 
 def main() -> None:
     """Enter from the command line."""
     check_engine()
+    if "gui" not in sys.argv:
+        end_as_interrupted()
     raise SystemExit(run(sys.argv[1:]))
+
+
+def end_as_interrupted() -> None:
+    """Let a request to end (SIGTERM: a shutdown, a job manager) stop the work as Ctrl+C does.
+
+    A thread waits for it instead of a handler: a library that is loaded later (pycolmap) sets its own, which prints the
+    machine's stack. For a program without a window, before its other threads begin.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        return  # Windows has no such request
+    main_thread = threading.main_thread().ident
+    assert main_thread is not None
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
+
+    def wait() -> None:
+        signal.sigwait({signal.SIGTERM})
+        signal.pthread_kill(main_thread, signal.SIGINT)
+
+    threading.Thread(target=wait, name="end", daemon=True).start()
 
 
 def gui_main() -> None:
@@ -99,6 +128,11 @@ def check_engine() -> None:
             debug=False,
         )
         raise SystemExit(BAD_INPUT)
+
+
+def _bug(error: Exception, debug: bool) -> int:
+    said = f"{type(error).__name__}: {error}"
+    return _say(f"Motionwright has a bug ({said}); run again with --debug and report what it prints.", BUG, debug)
 
 
 def _say(sentence: str, code: int, debug: bool) -> int:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
-from contextlib import closing
+from contextlib import AbstractContextManager, closing
 from pathlib import Path
 from typing import Any
 
 import click
 
 from app.actions import performing, performing_report
+from app.actions.beginning import begun
 from app.actions.marks import character_named
 from app.actions.session import Session
 from app.commands.console import Console
@@ -57,7 +58,7 @@ def add(
         raise InputError("It is not clear which file has the animation: name one file beside it.")
     if said["name"] and len(wanted) * len(chosen_animations) + len(characters) > 1:
         raise InputError("One name cannot serve several sequences: add them one by one.")
-    with closing(_open_or_new(project)) as session:
+    with _opened_or_begun(project) as session:
         added = []
         for (file, whose), animation in itertools.product(wanted, chosen_animations):
             facts = {key: said[key] for key in ("fps", "up", "unit")} | {"character": whose, "animation": animation}
@@ -191,12 +192,12 @@ def evaluate(console: Console, project: Path, name: str | None, labels: Path, to
         console.answer(values, lines)
 
 
-def _open_or_new(project: Path) -> Session:
+def _opened_or_begun(project: Path) -> AbstractContextManager[Session]:
     try:
         ProjectFolder.find(project)
     except InputError:
-        return Session.new(project)
-    return Session.open(project)
+        return begun(project)
+    return closing(Session.open(project))
 
 
 def _apply_structure(session: Session, sequence_id: str, said: dict[str, Any]) -> None:

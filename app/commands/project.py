@@ -8,7 +8,8 @@ from typing import Any
 
 import click
 
-from app.actions import bringing, marks, masking
+from app.actions import bringing, lost_media, marks, masking
+from app.actions.beginning import begun
 from app.actions.overview import overview
 from app.actions.session import Session
 from app.commands.console import Console
@@ -40,7 +41,7 @@ def new(
     """Begin a project."""
     if clip is not None and not clip.exists():
         raise InputError(f"{clip} does not exist: check the path.")
-    with closing(Session.new(project)) as session:
+    with begun(project) as session:
         if clip is not None:
             bringing.add_clip(session, clip, copy=copy)
         for mesh in meshes:
@@ -55,6 +56,7 @@ def new(
 @PROJECT
 @click.option("--clip", type=PATH, help="The filmed video, or a folder of pictures.")
 @click.option("--fps", type=float, help="Frame rate of a folder of pictures.")
+@click.option("--find", "places", type=PATH, multiple=True, help="Look here for files that are missing.")
 @click.option("--character", "meshes", type=PATH, multiple=True, help="Add a character.")
 @click.option("--up", type=click.Choice(["x", "y", "z"]), help="The up axis of the added characters.")
 @click.option("--marks", "marks_file", type=PATH, help="Take lassos, clicks, contacts and pairs from a file.")
@@ -135,6 +137,8 @@ def _mirror(session: Session, name: str, other: str, lag: str) -> None:
 
 def _set_media(session: Session, options: dict[str, Any]) -> None:
     copy = options["copy"]
+    for place in options["places"]:
+        lost_media.find_in(session, place)
     if options["clip"] is not None:
         bringing.add_clip(session, options["clip"], copy=copy, fps=options["fps"])
     for mesh in options["meshes"]:

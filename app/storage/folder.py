@@ -50,7 +50,9 @@ class ProjectFolder:
     def free(cls, path: Path) -> ProjectFolder:
         """Give the place of a new project, with the suffix; one that exists with a project inside is refused."""
         folder = cls(path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX))
-        if folder.file.exists():
+        with explained(folder.path):
+            there = folder.file.exists()
+        if there:
             raise InputError(f"{folder.path} is a project already: open it, or choose another name.")
         return folder
 
@@ -146,7 +148,10 @@ class ProjectFolder:
             known = candidate == candidates[0] or candidate.suffix == SUFFIX
             if candidate.exists() and (known or fingerprint(candidate) == media.fingerprint):
                 return candidate
-        raise InputError(f"{stated.name} is missing: it was expected at {candidates[0]}; say where it lies now.")
+        raise InputError(
+            f"{stated.name} is missing: it was expected at {candidates[0]}; put it back, or say where it lies now "
+            "(in the window, or with set --find FOLDER)."
+        )
 
     def read(self, file: Path) -> Document:
         """Read a document of this project, the saved one or another."""
