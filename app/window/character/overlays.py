@@ -24,6 +24,8 @@ Way = list[list[float]]
 """Widget places [x, y], NaN where unknown."""
 NARROW = 420
 """Pixels of width below which a view has no room for legends."""
+HEAT_WIDTH = 112
+"""Pixels at the right that the legend of the colours takes, with the words beside its bar."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,7 +69,7 @@ class TrackView(Panel):
         clip = project.document.clip
         character = next((each for each in project.document.characters if each.id == project.character_id), None)
         paired = len(character.pairs) if character else 0
-        self.header.caption.setText(f"{paired} of {len(project.document.tracks)} points paired" if clip else "")
+        self.header.caption.setText(f"{paired} of {len(project.document.tracks)} paired" if clip else "")
         if clip is not None:
             self.notes.show_frame(self.frame, clip.frame_count, self.frame / max(clip.fps, 1e-9))
 

@@ -41,8 +41,13 @@ class Handle:
     before: tuple[float, float, float] | None = None
 
 
-def paint_handles(painter: QPainter, lens: Lens, handles: Sequence[Handle], pointed: Sequence[int] = ()) -> None:
-    """Draw the handles, the selected one last with its axes and its name; those pointed at are named and lit."""
+def paint_handles(
+    painter: QPainter, lens: Lens, handles: Sequence[Handle], pointed: Sequence[int] = (), *, taken: int = 0
+) -> None:
+    """Draw the handles, the selected one last with its axes and its name; those pointed at are named and lit.
+
+    No name is written into the pixels at the right that are ``taken`` by something else.
+    """
     if not handles:
         return
     order = sorted(handles, key=lambda each: (each.selected, each.kind.startswith("edited")))
@@ -61,7 +66,7 @@ def paint_handles(painter: QPainter, lens: Lens, handles: Sequence[Handle], poin
         if handle.selected:
             _axes(painter, lens, handle, x, y)
         if handle.selected or handle.vertex in pointed:
-            fits = x + 14 + marks.plate_size(handle.title)[0] < lens.size[0]
+            fits = x + 14 + marks.plate_size(handle.title)[0] < lens.size[0] - taken
             look, side = theme.DARK.colour(_colour(handle)), "left" if fits else "right"
             marks.plate(painter, x + 14 if fits else x - 14, y - 20, handle.title, look, align=side)
 

@@ -56,6 +56,7 @@ class Viewport(QWidget):
     gizmo : what places the whole character; while it is shown no vertex can be taken.
     grabbing : whether vertices can be taken.
     highlighted : a vertex that is pointed at elsewhere, -1 for none.
+    taken : pixels at the right that notes lie over: names of handles keep out of them.
     """
 
     happened = Signal(object)
@@ -84,6 +85,7 @@ class Viewport(QWidget):
         self.gizmo: Gizmo | None = None
         self.grabbing = True
         self.highlighted = -1
+        self.taken = 0
         self.mouse = Mouse(self)
         self._idle = QTimer(self)
         self._idle.setSingleShot(True)
@@ -263,7 +265,7 @@ class Viewport(QWidget):
         if self.gizmo is not None:
             paint_gizmo(painter, lens, self.gizmo, getattr(self._drag, "part", self.mouse.part))
         else:
-            paint_handles(painter, lens, self.handles, (self.mouse.hover, self.highlighted))
+            paint_handles(painter, lens, self.handles, (self.mouse.hover, self.highlighted), taken=self.taken)
         for note in self.notes:
             note(painter, lens)
 
