@@ -100,8 +100,7 @@ class Shell(QMainWindow, NamedPages):
             signal.connect(lambda: self.bar.show_work(project))
         for signal in (project.selection_changed, project.stage_finished, project.work_changed):
             signal.connect(lambda *_: self._refresh.start())
-        for workspace in self.pages.workspaces.values():
-            workspace.attach(project, opened.loader)
+        self.pages.attach(project, opened.loader)
         self._attach()
         self.bar.show_document(project)
         self.bar.show_work(project)
@@ -118,16 +117,14 @@ class Shell(QMainWindow, NamedPages):
         if opened.loader is not None:
             opened.loader.loaded.connect(self._loaded)
             opened.loader.failed.connect(self.tell)
-        for workspace in self.pages.workspaces.values():
-            workspace.attach_clip(opened.project, opened.loader)
+        self.pages.attach_clip(opened.project, opened.loader)
         self.timeline.show_project(opened.project, opened.loader)
         self._show_frame(opened.project.frame)
 
     def _close_project(self) -> None:
         self.navigator.playback.stop()
         self.care.detach()
-        for workspace in self.pages.workspaces.values():
-            workspace.detach()
+        self.pages.detach()
         opened, self.opened, self.shown = self.opened, None, None
         if opened is not None:
             opened.close()
@@ -139,7 +136,13 @@ class Shell(QMainWindow, NamedPages):
         """Show a workspace, or the welcome where there is no clip yet."""
         self.bar.show_workspace(name)
         self.split.workspace = name
-        self.pages.choose(name, self.project.document if self.project is not None else None)
+        self.pages.turn_to(name)
+        self._show_page()
+
+    def _show_page(self) -> None:
+        if self.seen and self.pages.prepare(self._show_page):
+            return
+        self.pages.choose(self.project.document if self.project is not None else None)
         if self.pages.welcoming:
             self.status.show_hint(self.welcome.HINT)
         self.timeline.setVisible(not self.pages.welcoming and not self.in_sight().own_timeline)
@@ -150,8 +153,7 @@ class Shell(QMainWindow, NamedPages):
     def _changed(self, before: Document, after: Document) -> None:
         if self.pages.welcoming != self.in_sight().is_empty(after):
             self.show_workspace(self.workspace)
-        for workspace in self.pages.workspaces.values():
-            workspace.document_changed(before, after)
+        self.pages.document_changed(before, after)
         self._refresh.start()
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -294,6 +296,5 @@ class Shell(QMainWindow, NamedPages):
         settings.settings().setValue("geometry", self.saveGeometry())
         self._close_project()
         self.calls.close()
-        for workspace in self.pages.workspaces.values():
-            workspace.close_view()
+        self.pages.close_views()
         event.accept()

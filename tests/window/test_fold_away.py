@@ -24,6 +24,7 @@ PAGES = (("video", Qt.Key.Key_F1), ("character", Qt.Key.Key_F2), ("performance",
 def test_a_narrow_window_folds_the_column_and_keeps_the_picture(shell: Shell, page: str, key: Qt.Key) -> None:
     """Below 1280 pixels the strip alone is there; above them the column comes back with the width that it had."""
     QTest.keyClick(shell, key)
+    wait_for(lambda: shell.pages.currentWidget() is shell.pages.in_sight)
     settle(150)
     aside = shell.pages.in_sight.aside
     assert aside is not None

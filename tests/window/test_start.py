@@ -31,10 +31,33 @@ def test_a_page_is_made_when_it_is_first_shown(shell: Shell) -> None:
     assert shell.character.project is shell.project
     assert shell.character.frame == 5
     QTest.keyClick(shell, Qt.Key.Key_F3)
-    assert shell.pages.currentWidget() is shell.performance
+    wait_for(lambda: shell.pages.currentWidget() is shell.pages.workspaces.get("performance"))
     assert shell.performance.project is shell.project
     QTest.keyClick(shell, Qt.Key.Key_F2)
     assert shell.pages.currentWidget() is shell.character
+
+
+def test_a_page_of_many_parts_is_made_in_steps(shell: Shell) -> None:
+    """The window lives between them; whoever needs the page now has it whole, and shown."""
+    QTest.keyClick(shell, Qt.Key.Key_F3)
+    assert set(shell.pages.workspaces) == {"video"}, "it was made in one go"
+    assert shell.pages.currentWidget() is shell.video
+    assert shell.bar.tabs["performance"].isChecked()
+    QTest.keyClick(shell, Qt.Key.Key_F1)
+    settle(50)
+    assert shell.pages.currentWidget() is shell.video, "another page was asked for meanwhile"
+    QTest.keyClick(shell, Qt.Key.Key_F3)
+    page = shell.performance
+    assert shell.pages.currentWidget() is page
+    assert page.project is shell.project
+
+
+def test_a_window_closed_while_a_page_is_made(shell: Shell) -> None:
+    """What is half made is closed with the rest."""
+    QTest.keyClick(shell, Qt.Key.Key_F3)
+    shell.close()
+    settle(50)
+    assert "performance" in shell.pages.workspaces
 
 
 def test_making_a_page_opens_no_window(shell: Shell, qapp: QApplication) -> None:
@@ -51,6 +74,7 @@ def test_making_a_page_opens_no_window(shell: Shell, qapp: QApplication) -> None
     qapp.installEventFilter(watch)
     for key in (Qt.Key.Key_F2, Qt.Key.Key_F3):
         QTest.keyClick(shell, key)
+        wait_for(lambda: shell.pages.currentWidget() is shell.pages.in_sight)
         settle(50)
     qapp.removeEventFilter(watch)
     assert set(shell.pages.workspaces) == {"video", "character", "performance"}

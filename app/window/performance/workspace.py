@@ -38,11 +38,14 @@ LOW = 690
 
 
 class PerformanceWorkspace(Workspace):
-    """Puts the parts side by side, ties them to one state, and answers commands."""
+    """Puts the parts side by side, ties them to one state, and answers commands.
+
+    Not made ``whole``, its parts stand alone until ``put_together`` is called.
+    """
 
     own_timeline = True
 
-    def __init__(self, choice: Choice = "auto") -> None:
+    def __init__(self, choice: Choice = "auto", *, whole: bool = True) -> None:
         super().__init__()
         self.project: Project | None = None
         self.calls = BackgroundCalls(self)
@@ -70,6 +73,11 @@ class PerformanceWorkspace(Workspace):
         self._cards.setSingleShot(True)
         self._cards.setInterval(60)
         self._cards.timeout.connect(self.library.refresh)
+        if whole:
+            self.put_together()
+
+    def put_together(self) -> None:
+        """Put the parts into the page and tie them to each other."""
         self._build()
         self._connect()
 
