@@ -39,7 +39,7 @@ def test_the_3d_libraries_load_behind_the_window(
     open_shell: Callable[[Session], Shell], session: Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The workspace comes into sight at once and says that it loads; the window lives on until the view is there."""
-    monkeypatch.setattr("app.window.character.mesh_view.LIBRARIES", "tests.window.late_library")
+    monkeypatch.setattr("app.window.lazy_view.LIBRARIES", "tests.window.late_library")
     monkeypatch.delitem(sys.modules, "tests.window.late_library", raising=False)
     shell = open_shell(session)
     QTest.keyClick(shell, Qt.Key.Key_F2)

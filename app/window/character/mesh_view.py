@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -12,21 +10,19 @@ from PySide6.QtCore import QEvent, Signal
 from PySide6.QtGui import QImage, QResizeEvent
 
 from app.actions.heat import Heat
-from app.window.background_call import BackgroundCalls
 from app.window.character.empty import Empty
 from app.window.character.mesh_header import MeshHeader
 from app.window.character.over_panes import OverPanes
+from app.window.character.overlays import HEAT_WIDTH
 from app.window.character.panes import SPLIT, Pane, Panes
 from app.window.character.surroundings import Surroundings
 from app.window.controls import ErrorBar, Panel
+from app.window.lazy_view import FAILED, Libraries
 from app.window.picture_notes import PictureNotes
 from app.window.viewport import Gizmo, Handle, Viewport
 from app.window.viewport.hosts import Choice
-from app.window.work import details
 from imitation.geometry import Camera
 
-LIBRARIES = "app.window.viewport.scene"
-"""The module whose loading loads the 3D libraries."""
 SPOKEN = 700
 """Pixels of width from which the header has room for a caption."""
 Array = NDArray[np.float64]
@@ -43,8 +39,9 @@ class MeshView(Panel):
 
     def __init__(self, choice: Choice) -> None:
         super().__init__("Character", " ")
-        self._calls = BackgroundCalls(self)
-        self._loading = False
+        self._libraries = Libraries(self)
+        self._libraries.loaded.connect(self.loaded)
+        self._libraries.failed.connect(self._not_loaded)
         self.over = OverPanes()
         self.calm: Callable[[], bool] = lambda: True
         self._mesh: tuple[int, int] = (0, 0)
@@ -98,17 +95,11 @@ class MeshView(Panel):
 
     def ready(self) -> bool:
         """Whether the viewport can be made at once; else the 3D libraries are loaded, and ``loaded`` says when."""
-        if self.viewport is not None or LIBRARIES in sys.modules:
-            return True
-        if not self._loading:
-            self._loading = True
-            self._calls.run(lambda: importlib.import_module(LIBRARIES), lambda _: self.loaded.emit(), self._not_loaded)
-        return False
+        return self.viewport is not None or self._libraries.ready()
 
-    def _not_loaded(self, error: BaseException) -> None:
-        self._loading = False
-        self.waiting.setText("The 3D view cannot be loaded.")
-        self.errors.tell(f"The 3D view cannot be loaded: {error}", details(error))
+    def _not_loaded(self, sentence: str, trace: str) -> None:
+        self.waiting.setText(FAILED)
+        self.errors.tell(sentence, trace)
 
     def make(self, kind: str = "main") -> Pane:
         """Give a pane, made now where there is none yet."""
@@ -315,6 +306,7 @@ class MeshView(Panel):
         """Colour the mesh, or give it its own colours."""
         self.over.heat = heat
         for pane in self.panes.own:
+            pane.view.taken = HEAT_WIDTH if heat is not None else 0
             if heat is None or len(heat.colours) == len(pane.view.vertices):
                 pane.view.paint(None if heat is None else heat.colours)
             pane.view.repaint_over()
@@ -364,5 +356,5 @@ class MeshView(Panel):
 
     def finish(self) -> None:
         """Close the render windows."""
-        self._calls.close()
+        self._libraries.close()
         self.panes.finish()
