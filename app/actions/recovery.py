@@ -14,6 +14,7 @@ from app.model.document import Document
 from app.storage.folder import ProjectFolder
 from app.storage.lock import in_use
 from app.storage.recovery import UnsavedWork, readable, set_aside, unsaved_work
+from app.storage.results import ResultStore
 from imitation.errors import InputError
 
 ABANDONED = 24 * 3600.0
@@ -74,9 +75,14 @@ def beside_damaged(path: Path) -> UnsavedWork | None:
 
 
 def open_copy(work: UnsavedWork) -> Session:
-    """Open an autosave as a project without a place, its media where they are; the damaged project stays as it is."""
-    document = linked_from(work.document, ProjectFolder(work.file.parent))
+    """Open an autosave as a project without a place; the damaged project stays as it is.
+
+    Its media are used where they are, and what was computed of them is not computed again.
+    """
+    damaged = ProjectFolder(work.file.parent)
+    document = linked_from(work.document, damaged)
     session = Session.new(name=document.name)
+    ResultStore(session.folder.results).share(ResultStore(damaged.results))
     session.recover(document)
     return session
 

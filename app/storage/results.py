@@ -75,6 +75,27 @@ class ResultStore:
         except (OSError, ValueError, TypeError, AttributeError, ImportError) as error:
             raise KeyError(key) from error
 
+    def share(self, other: ResultStore) -> None:
+        """Take the results of another store without copying them: a result is never written again under its key.
+
+        Where the file system cannot give one file two names they are left out, and computed again when wanted.
+        """
+        for source in other.folder.glob("*/*"):
+            if source.name.startswith("."):
+                continue
+            target = self.folder / source.relative_to(other.folder)
+            if source.is_dir() and not target.exists():
+                beside = target.with_name(f".{target.name}.{os.getpid()}.part")
+                try:
+                    shutil.copytree(source, beside, copy_function=os.link)
+                    beside.rename(target)
+                except OSError:
+                    shutil.rmtree(beside, ignore_errors=True)
+                    return
+            elif source.is_file() and source.parent.name == "names":
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.touch()
+
     def size(self) -> int:
         """Bytes of all results."""
         return sum(file.stat().st_size for file in self.folder.rglob("*") if file.is_file())

@@ -234,8 +234,11 @@ def test_settings_are_in_force_and_remembered(shell: Shell) -> None:
 def test_beside_a_damaged_project_its_autosave_opens_as_a_copy(
     open_shell: Callable[[Session], Shell], session: Session, monkeypatch: pytest.MonkeyPatch, at_start: bool
 ) -> None:
-    """The sentence has a button; the copy has no place, finds its media, and leaves the damaged project as it is."""
+    """The sentence has a button; the copy has no place, finds media and results, and leaves the project as it is."""
     place = session.folder.path
+    (character,) = session.document.characters
+    session.result(session.stages.animation(character.id))
+    before = {file: file.read_bytes() for file in session.folder.results.rglob("*") if file.is_file()}
     session.apply(scene.rename(session.document, "what I did last"))
     abandon(session)
     (place / "project.json").write_text('{"version": 2, "na')
@@ -254,10 +257,12 @@ def test_beside_a_damaged_project_its_autosave_opens_as_a_copy(
     assert not project.session.titled
     assert shell.isWindowModified()
     assert len(project.document.tracks) == len(session.document.tracks)
+    assert project.state(project.session.stages.animation(character.id)) == "fresh", "it is solved anew"
     wait_for(lambda: not shell.video.canvas.picture.isNull())
     assert project.session.media.locate(project.document.characters[0].mesh).is_file()
     assert (place / "project.json").read_text() == '{"version": 2, "na'
     assert (place / "autosave.json").is_file()
+    assert {file: file.read_bytes() for file in before} == before
     assert "lost" not in " ".join(shell.care.notices.open)
     project.cancel_work()
     wait_for(lambda: not project.progress)
