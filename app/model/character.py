@@ -42,7 +42,8 @@ class Move:
     ----------
     place : world.
     muted : it is kept but has no effect.
-    on_ray : only its image point was chosen: along the ray the vertex went where the mesh took it.
+    on_ray : only its image point was chosen: along the ray the vertex went where the mesh took it. That holds in this
+        frame; what spreads to others is the committed place (eq. 6), for they have their own image points.
     """
 
     place: Point3
