@@ -55,7 +55,10 @@ def load_slow_libraries(viewport: Choice = "auto") -> threading.Thread:
     """Load in a thread what the first 3D picture and, a while later, what the first drag will need."""
     from app.window.viewport import hosts
 
-    host = ("app.window.viewport.gl_host",) if hosts.choose(viewport) == "gl" else ()
+    chosen = hosts.choose(viewport)
+    if viewport == "auto":
+        settings.remember_graphics_card(chosen == "gl")
+    host = ("app.window.viewport.gl_host",) if chosen == "gl" else ()
 
     def load() -> None:
         for names, pause in (((*PICTURE[:1], *host, *PICTURE[1:]), PAUSE), (SLOW, 0.0)):
@@ -84,6 +87,10 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
 
         session, refused = _first(path, sample)
         shell = Shell(session, viewport=viewport or settings.viewport())
+        if settings.expects_opengl(viewport or settings.viewport()):
+            from app.window.viewport import hosts
+
+            hosts.await_opengl(shell)
         geometry = settings.settings().value("geometry")
         if geometry is not None:
             shell.restoreGeometry(geometry)

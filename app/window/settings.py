@@ -54,6 +54,19 @@ def viewport() -> Choice:
     return "gl" if value == "gl" else "raster" if value == "raster" else "auto"
 
 
+def expects_opengl(wanted: Choice) -> bool:
+    """Whether OpenGL will draw in 3D: by choice, or because a graphics card was found when the window was last open.
+
+    To look for one takes longer than the window has until it is seen.
+    """
+    return wanted == "gl" or (wanted == "auto" and str(settings().value("graphics card", "false")) == "true")
+
+
+def remember_graphics_card(found: bool) -> None:
+    """Keep whether this machine has one, for the next start."""
+    settings().setValue("graphics card", "true" if found else "false")
+
+
 def _chosen(name: str, values: tuple[int, ...], default: int) -> int:
     """A remembered number; one that cannot be chosen, by hand or by a newer program, counts as the default."""
     try:

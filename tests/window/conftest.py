@@ -22,10 +22,14 @@ from app.actions.session import Session
 from app.window.application import make_application
 from app.window.settings import settings
 from app.window.shell import Shell
+from app.window.viewport import hosts
+from app.window.viewport.hosts import Choice
 from tests.window.small_project import build_small_project
 
 hypothesis.settings.register_profile("window", deadline=None)
 hypothesis.settings.load_profile("window")
+VIEWPORT: Choice = "gl" if os.environ.get("MOTIONWRIGHT_VIEWPORT") == "gl" else "raster"
+"""What draws in 3D; OpenGL needs a screen."""
 HARMLESS = ("propagateSizeHints", "does not support raise()", "does not support grabbing the keyboard")
 """What Qt says of windows without a screen, not of the program."""
 
@@ -154,8 +158,10 @@ def open_shell(qapp: QApplication, monkeypatch: pytest.MonkeyPatch) -> Iterator[
     opened: list[Shell] = []
 
     def open_(session: Session) -> Shell:
-        shell = Shell(session, viewport="raster")
+        shell = Shell(session, viewport=VIEWPORT)
         opened.append(shell)
+        if VIEWPORT == "gl":
+            hosts.await_opengl(shell)
         shell.resize(1440, 900)
         shell.show()
         QTest.qWaitForWindowExposed(shell)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 from typing import Literal, Protocol
 
@@ -12,6 +13,9 @@ from app.window.viewport.background import Background
 from app.window.viewport.lens import Lens
 
 Choice = Literal["auto", "raster", "gl"]
+
+WITHOUT_OPENGL = ("offscreen", "minimal", "vnc", "linuxfb")
+"""Platforms of Qt on which nothing is drawn by OpenGL."""
 
 
 class Host(Protocol):
@@ -27,9 +31,10 @@ class Host(Protocol):
         """Close the render window."""
 
 
+@functools.cache
 def _has_graphics_card() -> bool:
-    """Whether the platform is a desktop with an OpenGL that is not computed by the processor."""
-    if QGuiApplication.platformName() in ("offscreen", "minimal", "vnc", "linuxfb"):
+    """Whether the platform is a desktop with an OpenGL that is not computed by the processor; asked once a run."""
+    if QGuiApplication.platformName() in WITHOUT_OPENGL:
         return False
     from PySide6.QtGui import QOffscreenSurface, QOpenGLContext
 
@@ -49,6 +54,21 @@ def choose(wanted: Choice) -> Literal["raster", "gl"]:
     if wanted != "auto":
         return wanted
     return "gl" if _has_graphics_card() else "raster"
+
+
+def await_opengl(window: QWidget) -> None:
+    """Have a window made, before it is shown, in the way that OpenGL needs.
+
+    Otherwise Qt makes it anew when the first view of that kind comes into it: it blinks, and loses the keys where no
+    window manager gives them back. What tells Qt so is a child that draws in OpenGL, though it is never shown.
+    """
+    if QGuiApplication.platformName() in WITHOUT_OPENGL:
+        return
+    from PySide6.QtOpenGLWidgets import QOpenGLWidget
+
+    child = QOpenGLWidget(window)
+    child.resize(0, 0)
+    child.hide()
 
 
 def make_host(choice: Literal["raster", "gl"], parent: QWidget) -> QWidget:
