@@ -51,7 +51,7 @@ def placed(document: Document) -> Stage:
         from app.stages.depth import depth
 
         needs = (depth(document), tracking.masks(document), *needs)
-        return Stage("contacts", "Placing contacts", _on_background, (document.clip, *inputs), needs, 3, weight=2.0)
+        return Stage("contacts", "Placing contacts", _on_background, (document.clip, *inputs), needs, 4, weight=2.0)
     return Stage("contacts", "Placing contacts", _placed, inputs, needs, version=3, weight=0.2)
 
 

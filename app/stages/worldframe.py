@@ -144,7 +144,7 @@ def place_on_background(
     surest = sorted(frames, key=lambda t: (-round(float(track.confidence[t]), 2), abs(2 * t - first - last)))[
         :SOUNDINGS
     ]
-    places, off, reason = [], [], ""
+    places, asked, off, reason = [], [], [], ""
     for frame in sorted(surest):
         try:
             place, residual = known.place(frame, track.positions[frame])
@@ -155,10 +155,11 @@ def place_on_background(
             reason = "The measured background strays there."
             continue
         places.append(place)
+        asked.append(frame)
         off.append(residual)
     if places:
         place = np.median(np.array(places), axis=0)
-        apart = np.linalg.norm(np.array(places) - place, axis=1)
+        apart = _differing(np.array(places), asked, track, choice, world)
         residual = float(np.sqrt(np.mean(np.square(off)) + np.mean(np.square(apart))))
         found = PlacedContact(first, last, place, "the measured background", residual)
         camera = world.cameras[frames[0]]
@@ -175,6 +176,27 @@ def place_on_background(
             reason = "The measured background differs from frame to frame there."
     instead = place_contact(contact, name, track, choice, world)
     return attrs.evolve(instead, ground=f"{instead.ground}, for {reason[0].lower()}{reason[1:].rstrip('.')}")
+
+
+def _differing(places: Array, frames: Sequence[int], track: Any, choice: WorldChoice, world: World) -> Array:
+    """How far the places (k, 3) of a contact's frames differ, world units: along their rays, beside the local ground.
+
+    A foot that slides, or whose point was not marked exactly, moves its place too; that says nothing of the background.
+    """
+    middle = frames[len(frames) // 2]
+    cameras, share = [world.cameras[frame] for frame in frames], np.ones(len(places))
+    try:
+        ground = ground_under(choice, world, middle, track.positions[middle])
+        for k, (frame, camera) in enumerate(zip(frames, cameras, strict=True)):
+            beside = float(camera.depth(ground.intersect(camera, track.positions[frame])))
+            share[k] = float(camera.depth(places[k])) / beside
+    except NoSolution:
+        strayed: Array = np.linalg.norm(places - np.median(places, axis=0), axis=1)
+        return strayed
+    differing: Array = np.abs(share / np.median(share) - 1) * [
+        float(c.depth(p)) for c, p in zip(cameras, places, strict=True)
+    ]
+    return differing
 
 
 def agreed(

@@ -134,3 +134,23 @@ def test_a_contact_on_the_measured_background_says_how_sure_it_is(world: World) 
         instead = place_on_background(contact, "paw", track, choice, world, known)  # type: ignore[arg-type]
         assert why in instead.ground
         np.testing.assert_allclose(instead.place, place, atol=1e-6)
+
+
+def test_a_foot_that_slides_says_nothing_against_the_background(world: World) -> None:
+    """The track moves half a metre over the floor during its contact; the measured floor is the same in every frame."""
+    place = np.array([0.3, 4.0, 0.0])
+    track = seen(world, place)
+    for frame in range(FRAMES):
+        track.positions[frame] = world.cameras[frame].project(place + np.array([0.06 * frame, 0.03 * frame, 0]))
+
+    class Floor:
+        def place(self, frame: int, pixel: np.ndarray) -> tuple[np.ndarray, float]:
+            ray = world.cameras[frame].rays(pixel)
+            centre = world.cameras[frame].centre
+            return centre - ray * centre[2] / ray[2], 0.01
+
+    contact = Contact(Interval(2, 9))
+    found = place_on_background(contact, "paw", track, WorldChoice(ground="background"), world, Floor())  # type: ignore[arg-type]
+    assert found.ground == "the measured background"
+    assert abs(found.place[2]) < 1e-6
+    assert found.residual < 0.012
