@@ -34,7 +34,10 @@ def read_ply(data: bytes, name: str) -> MeshFile:
         ready = lists.ndim == 2 and lists.shape[1] == 3 and lists.dtype.kind == "i"
         faces = _together(lists).astype(np.int32, copy=False) if ready else fans(lists.astype(np.int64))
     else:
-        faces = fan(lists)
+        try:
+            faces = fan(lists)
+        except (OverflowError, ValueError, TypeError) as error:
+            raise InputError(f"The PLY file {name} has faces with impossible vertex numbers: it is damaged.") from error
     return MeshFile(vertices, to_int32(faces, name), _colors(vertex), None, name)
 
 

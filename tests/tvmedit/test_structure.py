@@ -8,6 +8,8 @@ import pytest
 import tvmedit
 from imitation import InputError
 from resources.performer import Capture, Part, perform
+from tvmedit.structure.leaving import held
+from tvmedit.structure.structure import Cluster
 
 
 def cyclic_distances(periods: list[int], repeats: int) -> np.ndarray:
@@ -117,3 +119,16 @@ def test_one_round_repeats_on_the_users_word() -> None:
     assert again.cyclic
     assert again.textons == ((0, len(capture) - 1),)
     assert "user's word" in again.reason
+
+
+def test_what_was_seen_once_repeats_only_if_it_came_back() -> None:
+    """A slow change drifts away from what it was; a swing comes back: each with room for one texton."""
+    frames = np.arange(41)
+    once = Cluster(0, 40, True, ((14, 28),), 15.0)
+    drift = (0.1 * np.abs(frames[:, None] - frames)).astype(np.float32)
+    (changed,) = held(drift, [once], 1.0)
+    assert not changed.cyclic
+    assert changed.textons == ((0, 40),)
+    assert "does not come back" in changed.reason
+    swing = np.abs(np.exp(2j * np.pi * frames[:, None] / 15) - np.exp(2j * np.pi * frames / 15)).astype(np.float32)
+    assert held(swing, [once], 1.0) == [once]

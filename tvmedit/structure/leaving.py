@@ -40,23 +40,41 @@ def settle(atoms: NDArray[np.float32], clusters: list[Cluster], novelty: float, 
 
 
 def held(atoms: NDArray[np.float32], clusters: list[Cluster], novelty: float) -> list[Cluster]:
-    """Make each rest one motion that is played once: standing repeats at any period, so its period means nothing."""
-    return [_once(cluster) if _rests(atoms, cluster, novelty) else cluster for cluster in clusters]
+    """Make what holds a posture, or was seen once and did not come back, a motion that is played once.
+
+    Standing repeats at any period, so its period means nothing. A slow change (from standing into a bow) is at any time
+    like what was shortly before: where no two whole textons fit, it must have gone away and come back to repeat.
+    """
+    found = []
+    for cluster in clusters:
+        if _rests(atoms, cluster, novelty):
+            found.append(_once(cluster, "A rest: it holds one posture, and is played once."))
+        elif cluster.cyclic and len(cluster.textons) < 2 and _half_as_unlike(atoms, cluster, 1.0):
+            found.append(_once(cluster, "A slow change: it does not come back to what it was, and is played once."))
+        else:
+            found.append(cluster)
+    return found
 
 
 def _rests(atoms: NDArray[np.float32], cluster: Cluster, novelty: float) -> bool:
     """Whether a cluster holds one posture, in which half a period makes no more difference than a whole one."""
+    if not cluster.cyclic or not len(_away(atoms, cluster, novelty)):
+        return False
+    return _half_as_unlike(atoms, cluster, ALIKE)
+
+
+def _half_as_unlike(atoms: NDArray[np.float32], cluster: Cluster, share: float) -> bool:
+    """Whether frames half a period apart are less than ``share`` times as unlike as those a whole period apart."""
     period = round(cluster.period)
     frames = np.arange(cluster.first, cluster.last + 1 - period)
-    if not cluster.cyclic or len(frames) < 1 or not len(_away(atoms, cluster, novelty)):
+    if len(frames) < 1:
         return False
     whole, half = (float(np.median(atoms[frames, frames + lag])) for lag in (period, (period + 1) // 2))
-    return half < ALIKE * whole
+    return half < share * whole
 
 
-def _once(cluster: Cluster) -> Cluster:
+def _once(cluster: Cluster, reason: str) -> Cluster:
     span = (cluster.first, cluster.last)
-    reason = "A rest: it holds one posture, and is played once."
     return attrs.evolve(cluster, cyclic=False, textons=(span,), period=float(len(cluster)), reason=reason)
 
 

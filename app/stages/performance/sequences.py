@@ -53,7 +53,7 @@ def structure(document: Document, sequence: CapturedSequence) -> Stage:
     )
     needs = (distances(document, sequence),)
     label = f"Finding motions of {sequence.name}"
-    return Stage(f"structure/{sequence.id}", label, _structure, inputs, needs, version=3, weight=0.3)
+    return Stage(f"structure/{sequence.id}", label, _structure, inputs, needs, version=4, weight=0.3)
 
 
 def analysis(document: Document, sequence: CapturedSequence) -> Stage:

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 from app.formats.images import write_image
+from app.formats.meshes import read_mesh
 from app.formats.sequences import read_sequence, write_sequence
 from app.formats.tvm import FrameMesh, Texture, open_mesh_frames, painted, write_mesh_frames
 from imitation.errors import InputError
@@ -159,6 +160,17 @@ def test_texture_coordinates_that_are_no_numbers_are_painted(tmp_path: Path) -> 
     colours = painted(FrameMesh(MESH.vertices, MESH.faces, None, worn)).colours
     assert colours is not None
     assert colours.tolist() == [[10, 200, 30]] * 4
+
+
+@pytest.mark.parametrize("corner", ["99999999999999999999", "-1", "1e30", "nan", "4294967296", "1.5"])
+def test_a_text_ply_with_impossible_corners(corner: str, tmp_path: Path) -> None:
+    """Numbers that no integer holds, in faces of different length."""
+    lines = ["ply", "format ascii 1.0", "element vertex 4", *(f"property float {axis}" for axis in "xyz")]
+    lines += ["element face 2", "property list uchar int vertex_indices", "end_header"]
+    lines += [" ".join(str(value) for value in place) for place in MESH.vertices.tolist()]
+    (tmp_path / "mesh.ply").write_text("\n".join([*lines, f"3 0 1 {corner}", "4 0 1 2 3", ""]))
+    with contextlib.suppress(InputError):
+        assert read_mesh(tmp_path / "mesh.ply").faces.max() < 4
 
 
 def test_an_npz_of_no_rates(tmp_path: Path) -> None:
