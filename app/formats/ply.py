@@ -118,7 +118,10 @@ def _together(lists: NDArray[Any]) -> NDArray[Any]:
 def _colors(vertex: Columns) -> NDArray[np.uint8] | None:
     for names in (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "diffuse_green", "diffuse_blue")):
         if all(channel in vertex for channel in names):
-            values = np.stack([np.asarray(vertex[channel]) for channel in names], axis=1)
+            columns = [np.asarray(vertex[channel]) for channel in names]
+            if all(column.dtype == np.uint8 and column.ndim == 1 for column in columns):
+                return _columns(vertex, names)
+            values = np.stack(columns, axis=1)
             if values.dtype.kind == "f":
                 values = np.rint(np.nan_to_num(values) * 255)
             elif values.dtype.itemsize == 2:

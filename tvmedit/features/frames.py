@@ -24,14 +24,15 @@ def check_vertices(vertices: Any, frame: int) -> Array:
         raise InputError(f"Frame {frame} has vertices of shape {points.shape}: give an array of shape (v, 3).")
     if len(points) == 0:
         raise InputError(f"Frame {frame} has no vertices: leave it out or capture it again.")
+    # Values that are not finite reach one end or the other, so that the ends tell of all of them.
+    if max(float(points.max()), -float(points.min())) < 1e12:
+        return points
     if not np.isfinite(points).all():
         count = int((~np.isfinite(points)).any(axis=1).sum())
         raise InputError(
             f"Frame {frame} has {count} vertices that are not finite numbers: repair or leave out that frame."
         )
-    if not max(float(points.max()), -float(points.min())) < 1e12:
-        raise InputError(f"Frame {frame} has vertices more than 1e12 units away: repair or leave out that frame.")
-    return points
+    raise InputError(f"Frame {frame} has vertices more than 1e12 units away: repair or leave out that frame.")
 
 
 def check_faces(faces: Any, count: int, frame: int) -> Faces:
