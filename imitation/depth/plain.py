@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 EVEN = 6  # levels, the worst channel, that three neighbouring pixels of a plain surface differ by at most
 ALIKE = 8.0  # levels by which its rim may differ from the pixel beside it
+STEP = 3  # the same of five, within one part of a surface that is no plane as a whole
 RIM = 2  # pixels that smoothing has taken off
 SMALLEST = 60  # pixels of a surface, at a width of 480
 TRIED = 60  # planes through three of its pixels
@@ -40,16 +41,48 @@ def plain_surfaces(picture: NDArray[np.uint8], hidden: NDArray[np.uint8]) -> tup
         smooth = cv2.bilateralFilter(smooth, 7, sigma, 2.5)
     kernel = np.ones((3, 3), np.uint8)
     uneven = cv2.absdiff(cv2.dilate(smooth, kernel), cv2.erode(smooth, kernel)).max(axis=-1)
-    even = ((uneven <= EVEN) & shown).astype(np.uint8)
-    count, found, statistics, _ = cv2.connectedComponentsWithStats(even, connectivity=4)
-    least = SMALLEST * (max(hidden.shape) / 480) ** 2
+    names, count = _numbered((uneven <= EVEN) & shown)
+    return _with_rims(names, smooth, shown), count
+
+
+def parts_of(names: NDArray[np.int32], picture: NDArray[np.uint8]) -> tuple[NDArray[np.int32], int]:
+    """Number the parts (h, w) of surfaces between which colours step by a few levels; how many there are.
+
+    A side of a box may be nearly of the colour of the wall behind it: smoothing joins the two across their edge. A
+    median keeps the step.
+
+    Parameters
+    ----------
+    names : (h, w) above 0 on the surfaces. picture : (h, w, 3).
+    """
+    import cv2
+
+    shown = names > 0
+    calm = np.where(shown[..., None], picture, np.uint8(128))
+    for _ in range(3):
+        calm = cv2.medianBlur(calm, 5)
+    kernel = np.ones((2 * RIM + 1, 2 * RIM + 1), np.uint8)
+    uneven = cv2.absdiff(cv2.dilate(calm, kernel), cv2.erode(calm, kernel)).max(axis=-1)
+    parts, count = _numbered((uneven <= STEP) & shown)
+    return _with_rims(parts, calm, shown, STEP), count
+
+
+def _numbered(even: NDArray[np.bool_]) -> tuple[NDArray[np.int32], int]:
+    """The connected areas of a picture (h, w) that are large enough, from 1; how many there are."""
+    import cv2
+
+    count, found, statistics, _ = cv2.connectedComponentsWithStats(even.astype(np.uint8), connectivity=4)
+    least = SMALLEST * (max(even.shape) / 480) ** 2
     kept = np.zeros(count, np.int32)
     large = np.flatnonzero(statistics[1:, cv2.CC_STAT_AREA] >= least) + 1
     kept[large] = np.arange(1, len(large) + 1)
-    return _with_rims(kept[found], smooth, shown), len(large)
+    names: NDArray[np.int32] = kept[found]
+    return names, len(large)
 
 
-def _with_rims(names: NDArray[np.int32], smooth: NDArray[np.uint8], shown: NDArray[np.bool_]) -> NDArray[np.int32]:
+def _with_rims(
+    names: NDArray[np.int32], smooth: NDArray[np.uint8], shown: NDArray[np.bool_], alike: float = ALIKE
+) -> NDArray[np.int32]:
     """Give pixels beside a surface to it where they are of its colour."""
     colour = smooth.astype(np.int16)
     for _ in range(RIM):
@@ -58,7 +91,7 @@ def _with_rims(names: NDArray[np.int32], smooth: NDArray[np.uint8], shown: NDArr
             end = [slice(None), slice(None)]
             end[axis] = slice(0, 1) if way > 0 else slice(-1, None)
             name[tuple(end)] = 0  # nothing comes from the other side of the picture
-            taken = (names == 0) & (name > 0) & shown & (np.abs(beside - colour).max(axis=-1) <= ALIKE)
+            taken = (names == 0) & (name > 0) & shown & (np.abs(beside - colour).max(axis=-1) <= alike)
             names = np.where(taken, name, names)
             colour = np.where(taken[..., None], beside, colour)
     return names
@@ -81,8 +114,25 @@ def with_planes(
     """
     names, count = plain_surfaces(picture, hidden)
     result = plane.copy()
+    refused = _lay(result, plane, volume, names, count, apart)
+    if refused.any():
+        # What is no plane may be two surfaces of nearly one colour.
+        _lay(result, plane, volume, *parts_of(np.where(refused, names, 0), picture), apart)
+    return result
+
+
+def _lay(
+    result: NDArray[np.float32],
+    plane: NDArray[np.float32],
+    volume: NDArray[np.uint8],
+    names: NDArray[np.int32],
+    count: int,
+    apart: float,
+) -> NDArray[np.bool_]:
+    """Lay numbered surfaces onto planes, in place; which pixels (h, w) belong to one that is none."""
+    refused = np.zeros(names.shape, bool)
     if not count:
-        return result
+        return refused
     order = np.argsort(names, axis=None, kind="stable")
     ends = np.searchsorted(names.ravel()[order], np.arange(1, count + 2))
     random = np.random.default_rng(0)
@@ -96,11 +146,13 @@ def with_planes(
         own = _cost_found(volume, x, y, plane)
         corners = random.integers(0, len(x), (TRIED, 3))
         best, cost = _fit(volume, x, y, plane, corners)
-        if cost <= own + WORSE:
-            laid = np.clip(best[0] + best[1] * columns + best[2] * rows, 0, last)
-            found = plane[rows, columns]
-            result[rows, columns] = np.where(np.abs(laid - found) >= apart, laid, found)
-    return result
+        if cost > own + WORSE:
+            refused[rows, columns] = True
+            continue
+        laid = np.clip(best[0] + best[1] * columns + best[2] * rows, 0, last)
+        found = plane[rows, columns]
+        result[rows, columns] = np.where(np.abs(laid - found) >= apart, laid, found)
+    return refused
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from imitation.depth.plain import plain_surfaces, with_planes
+from imitation.depth.plain import parts_of, plain_surfaces, with_planes
 
 SIZE = (60, 80)
 DEEP = 30
@@ -59,6 +59,27 @@ def test_a_plain_wall_becomes_the_plane_that_its_costs_show() -> None:
     np.testing.assert_array_equal(laid[textured], found[textured])
     some = with_planes(found, costs(truth, 2), picture, np.zeros(SIZE, np.uint8), 3.0)
     np.testing.assert_array_equal(some, np.where(np.abs(laid - found) >= 3, laid, found))
+
+
+def test_two_planes_of_nearly_one_colour_are_parted() -> None:
+    """A side of a box before a wall, five levels apart: one surface to smoothing, two planes to what follows."""
+    picture, names = two_walls()
+    random = np.random.default_rng(7)
+    wall, side = (
+        np.rint(np.array(c) + random.normal(size=(*SIZE, 3)) * 1.5) for c in ((130, 120, 125), (125, 119, 130))
+    )
+    picture = np.where((names == 1)[..., None], wall, np.where((names == 2)[..., None], side, picture)).astype(np.uint8)
+    columns = np.mgrid[: SIZE[0], : SIZE[1]][1]
+    truth = np.where(names == 2, 18 + 0.1 * (columns - 40), 6.0)
+    found = (truth + random.normal(size=SIZE)).astype(np.float32)
+    found[15:45, 25:40] += 12  # what is near has spread over the wall
+    hidden = np.zeros(SIZE, np.uint8)
+    joined, count = plain_surfaces(picture, hidden)
+    assert count == 1
+    assert parts_of(joined, picture)[1] == 2
+    laid = with_planes(found, costs(truth, 2, 40.0), picture, hidden)
+    inner = (names > 0) & (np.abs(columns - 40) > 3)
+    assert np.abs(laid - truth)[inner].mean() < 0.4 < 1.5 < np.abs(found - truth)[inner].mean()
 
 
 def test_a_curved_surface_that_its_costs_show_stays() -> None:
