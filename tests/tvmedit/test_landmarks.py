@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 import tvmedit
 from resources.performer import Part, body_capsules, body_joints, body_mesh, motion_pose, perform
 from tests.benchmarks.carried import worst_steps
-from tvmedit.cuts.landmarks import counterparts, limb_ends
+from tvmedit.cuts.landmarks import counterparts, end_places, handle_count, limb_ends, matched_ends
 from tvmedit.cuts.registration import REFUSED_EDGES
 
 Mesh = tuple[np.ndarray, np.ndarray]
@@ -49,6 +49,40 @@ def test_places_are_found_however_far_a_limb_moved() -> None:
     assert np.linalg.norm(moved - after, axis=1).mean() < 0.06
 
 
+def test_raised_hands_are_not_taken_for_the_head() -> None:
+    """By how much surface lies near each end, where distances between ends would tell no end from another."""
+    (source, before), (target, after) = body("wave both", 0.05, 4), body("squat", 0.02, 5)
+    ours, theirs = (limb_ends(*mesh) for mesh in (source, target))
+    assert ours is not None
+    assert theirs is not None
+    pairs = matched_ends(ours, theirs)
+    assert pairs is not None
+    for mine, other in zip(*pairs, strict=True):
+        here = cKDTree(before).query(source[0][ours.vertices[mine]])[1]
+        assert here == cKDTree(after).query(target[0][theirs.vertices[other]])[1]
+
+
+def test_ends_of_limbs_have_their_places_in_the_other_body() -> None:
+    """Each end of one body's limbs is at the joint it belongs to in the other, exactly on its surface."""
+    (source, before), (target, after) = body(*UP, 2), body(*SPREAD, 3)
+    ends = end_places(source, target)
+    assert ends is not None
+    vertices, places = ends
+    assert cKDTree(target[0]).query(places)[0].max() == 0.0
+    assert np.array_equal(cKDTree(before).query(source[0][vertices])[1], cKDTree(after).query(places)[1])
+
+
+def test_a_hand_on_the_hip_is_a_handle() -> None:
+    """None on a body whose limbs hang free, holes or not; one a limb that touches it; parts beside it count apart."""
+    (_, free), _ = body(*SPREAD, 1)
+    (_, tied), _ = body("squat", 0.02, 2)
+    assert handle_count(free) == 0
+    assert handle_count(free[7:]) == 0
+    assert handle_count(tied) >= 1
+    apart = np.concatenate([free, tied + free.max() + 1])
+    assert handle_count(apart) == handle_count(tied)
+
+
 def test_one_mesh_that_moves_needs_no_search() -> None:
     """The same faces: every vertex is its own counterpart."""
     source, _ = body(*UP, 2)
@@ -73,6 +107,17 @@ def test_arms_far_from_their_goal_are_registered() -> None:
     found = tvmedit.register(source, target, height=1.75, edge=EDGE, iterations=14)
     assert found.reason == ""
     assert found.residual < REFUSED_EDGES * EDGE
+    moved = carried(source[0], found.between(1.0), before)
+    assert np.linalg.norm(moved - after, axis=1).max() < 0.15
+
+
+@pytest.mark.slow
+def test_hands_that_come_down_from_before_the_face_onto_the_thighs_are_registered() -> None:
+    """The way back is barred, since the hands are one surface with the thighs there; the ends of the limbs decide."""
+    (source, before), (target, after) = body("wave both", 0.9, 4), body("squat", 0.02, 5)
+    found = tvmedit.register(source, target, height=1.75, edge=EDGE, iterations=14)
+    assert found.reason == ""
+    assert np.linalg.norm(before - after, axis=1).max() > 0.7
     moved = carried(source[0], found.between(1.0), before)
     assert np.linalg.norm(moved - after, axis=1).max() < 0.15
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
-from tvmedit.cuts.landmarks import FREE_ENDS, limb_count
+from tvmedit.cuts.landmarks import FREE_ENDS, handle_count, limb_count
 from tvmedit.cuts.registration import Registration, register
 from tvmedit.cuts.seams import surface_step
 from tvmedit.features.frames import check_faces, check_vertices, upright
@@ -90,10 +90,10 @@ def blend_cut(
     Around the cut both clips are there: the one that is left goes on beyond its last frame, the one entered begins
     before its first. Each of the window's frames is the first clip's mesh deformed towards the second's, by a share
     that rises smoothly; or the second's towards the first's, where only that is possible (a hand that lies on a hip
-    cannot be torn off, one that is free can be laid there). Where neither is, a neighbouring frame's mesh whose limbs
-    are free is bent onto each frame first. Registration starts at the cut, where the two are most
-    alike, and runs outwards; frames where it fails end the window on that side. Colours pass from one clip's to the
-    nearest ones of the other.
+    cannot be torn off, one that is free can be laid there). Where neither is, or the mesh to deform has more limbs
+    grown together than the one to reach, a near frame's mesh whose limbs are freer is bent onto its frame first.
+    Registration starts at the cut, where the two are most alike, and runs outwards; frames where it fails end the
+    window on that side. Colours pass from one clip's to the nearest ones of the other.
 
     Parameters
     ----------
@@ -215,44 +215,54 @@ class _Pairs:
         self.height = graph.analyses[self.source].height
         self.edge = max(graph.analyses[self.source].edge, graph.analyses[self.target].edge)
         self._known: dict[tuple[bool, int], Shape] = {}
-        self._counts: dict[tuple[bool, int], int] = {}
+        self._known_ties: dict[tuple[bool, int], int] = {}
         self._free: dict[tuple[bool, int], tuple[Shape, int]] = {}
 
     def ends(self, k: int, backwards: bool, freed: bool) -> tuple[Shape, Shape]:
-        """The mesh to deform and the one to reach: of the clip that is left, going on, and of the one entered."""
-        here, there = (self._freed(before, k)[0] if freed else self._shape(before, k) for before in (True, False))
-        return (there, here) if backwards else (here, there)
+        """The mesh to deform and the one to reach: of the clip that is left, going on, and of the one entered.
+
+        What hangs free in the mesh to reach has to hang free in the one that is deformed: a hand that is one surface
+        with a hip would draw the hip along.
+        """
+        reached = self._freed(backwards, k)[0] if freed else self._shape(backwards, k)
+        return self._deformed(k, backwards, freed)[0], reached
+
+    def _deformed(self, k: int, backwards: bool, freed: bool) -> tuple[Shape, int]:
+        mine = not backwards
+        if freed or self._tied(mine, k) > self._tied(backwards, k):
+            return self._freed(mine, k)
+        return self._shape(mine, k), 0
 
     def taken(self, found: Iterable[int], way: tuple[bool, bool]) -> dict[int, tuple[int, int]]:
         """Sequence and frame of the meshes that were deformed, by position."""
         backwards, freed = way
         sequence, frame = (self.target, self.cut.enter) if backwards else (self.source, self.cut.leave + 1)
-        shifts = {k: self._freed(not backwards, k)[1] if freed else 0 for k in found}
+        shifts = {k: self._deformed(k, backwards, freed)[1] for k in found}
         return {self.cut.position + k: (sequence, frame + k + shift) for k, shift in sorted(shifts.items())}
 
     def _freed(self, before: bool, k: int) -> tuple[Shape, int]:
-        """A frame whose limbs hang free: itself, or the nearest frame's mesh bent onto it, and how far away that is."""
+        """A frame whose limbs hang free: itself, or the freest near one bent onto it, and how far away that is."""
         if (before, k) not in self._free:
             self._free[before, k] = self._find_free(before, k)
         return self._free[before, k]
 
-    def _hangs_free(self, before: bool, k: int) -> bool:
-        if (before, k) not in self._counts:
+    def _tied(self, before: bool, k: int) -> int:
+        """How many limbs do not hang free: none, or those that are one surface with the body or with each other."""
+        if (before, k) not in self._known_ties:
             shape = self._shape(before, k)
-            self._counts[before, k] = limb_count(shape.vertices, shape.faces)
-        return self._counts[before, k] >= FREE_ENDS
+            lost = FREE_ENDS - limb_count(shape.vertices, shape.faces)
+            self._known_ties[before, k] = max(lost, handle_count(shape.faces))
+        return self._known_ties[before, k]
 
     def _find_free(self, before: bool, k: int) -> tuple[Shape, int]:
         own = self._shape(before, k)
         most, frame = (self.source, self.cut.leave + 1) if before else (self.target, self.cut.enter)
         count = len(self.graph.analyses[most])
-        if self._hangs_free(before, k):
+        if not self._tied(before, k):
             return own, 0
-        for shift in sorted(range(-REACH, REACH + 1), key=lambda shift: (abs(shift), shift)):
-            if shift == 0 or not 0 <= frame + k + shift < count:
-                continue
-            if not self._hangs_free(before, k + shift):
-                continue
+        shifts = [shift for shift in range(-REACH, REACH + 1) if 0 <= frame + k + shift < count]
+        freer = [shift for shift in shifts if self._tied(before, k + shift) < self._tied(before, k)]
+        for shift in sorted(freer, key=lambda shift: (self._tied(before, k + shift), abs(shift), shift)):
             other = self._shape(before, k + shift)
             goal = (own.vertices, own.faces)
             bent = register((other.vertices, other.faces), goal, height=self.height, edge=self.edge, iterations=14)
@@ -281,7 +291,8 @@ class _Pairs:
 def blend_window(graph: MotionGraph, performance: Performance, cut: Cut, seconds: float) -> tuple[int, int]:
     """First and last offset from the cut: what both sequences have, and no nearer to another joint than half-way.
 
-    The last lies before the first where one clip ends, and the other begins, with its sequence.
+    What there is no room for on one side of the cut is taken on the other, as far as there is room. The last lies
+    before the first where one clip ends, and the other begins, with its sequence.
     """
     half = max(1, round(seconds * graph.fps / 2))
     positions = [0, *(other.position for other in performance.cuts if other.kind == "cut"), len(performance)]
@@ -289,10 +300,10 @@ def blend_window(graph: MotionGraph, performance: Performance, cut: Cut, seconds
     later = min((position for position in positions if position > cut.position), default=len(performance))
     source = graph.analyses[graph.nodes[cut.source].sequence]
     target = graph.analyses[graph.nodes[cut.target].sequence]
-    first = -min(half, (cut.position - earlier) // 2, cut.enter, _since_wrap(performance, cut))
-    room = min(len(source) - 2 - cut.leave, len(target) - 1 - cut.enter, _until_wrap(performance, cut))
-    last = min(half - 1, (later - cut.position) // 2 - 1, room)
-    return first, last
+    before = min((cut.position - earlier) // 2, cut.enter, _since_wrap(performance, cut))
+    filmed = min(len(source) - 2 - cut.leave, len(target) - 1 - cut.enter, _until_wrap(performance, cut))
+    after = min((later - cut.position) // 2 - 1, filmed) + 1
+    return -min(before, max(half, 2 * half - after)), min(after, max(half, 2 * half - before)) - 1
 
 
 def _since_wrap(performance: Performance, cut: Cut) -> int:

@@ -36,6 +36,10 @@ UNLIKE = 0.45
 """Of the longest: bodies whose ends lie so much further from or nearer to each other, on average, are not the same."""
 CLEAR = 0.03
 """How much worse the next best way to match limbs must be, in squares of the longest; otherwise sides are not told."""
+AROUND_ENDS = np.array([0.15, 0.3])
+"""Of the longest: a hand has less surface so near to its end than a head has, whatever the pose."""
+SIZES, OTHER_SIZE = 0.3, 0.5
+"""Weight of the squared logarithm of how much more that is, and the most that counts: limbs that touch share it."""
 HOLLOW = (10.0, 25.0)
 """Curvature along an edge from which it counts as hollow, and counts fully, over the root of the body's surface."""
 DETOUR = 20.0
@@ -62,12 +66,15 @@ class Ends:
         Of the furthest end from the middle.
     middles : (e, s, 3) float64
         Middle line of each limb at the stations.
+    sizes : (e, 2) float64
+        Shares of the surface that lie near each end.
     """
 
     distances: Array
     vertices: NDArray[np.int64]
     reach: float
     middles: Array
+    sizes: Array
 
 
 def limb_ends(vertices: Array, faces: Faces, *, around_hollows: bool = True) -> Ends | None:
@@ -109,13 +116,48 @@ def limb_ends(vertices: Array, faces: Faces, *, around_hollows: bool = True) -> 
     middles = np.array([_middle_line(vertices, row, out, out[end]) for row, end in zip(rows, chosen, strict=True)])
     if not np.isfinite(middles).all():
         return None
-    return Ends(distances, np.array(chosen), reach, middles)
+    area = _areas(vertices, faces)
+    sizes = (distances[:, :, None] < AROUND_ENDS * reach).transpose(0, 2, 1) @ area / area.sum()
+    return Ends(distances, np.array(chosen), reach, middles, sizes)
+
+
+def _areas(vertices: Array, faces: Faces) -> Array:
+    """Surface that belongs to each vertex: a third of its triangles'."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
+    return np.asarray(np.bincount(faces.ravel(), weights=np.repeat(third, 3), minlength=len(vertices)), np.float64)
 
 
 def limb_count(vertices: Array, faces: Faces) -> int:
     """How many limbs of a body hang free; 0 where it has too few to tell."""
     ends = limb_ends(vertices, faces, around_hollows=False)
     return 0 if ends is None else min(len(ends.vertices), FREE_ENDS)
+
+
+def handle_count(faces: Faces) -> int:
+    """How many ways lead round and back over a surface: one for each limb that touches the body and hangs on besides.
+
+    By the characteristic of Euler: vertices less edges plus faces are two for each closed part, less two for each
+    handle and one for each hole.
+    """
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    edges, counts = np.unique(edges, axis=0, return_counts=True)
+    parts, vertices = _pieces(edges)
+    holes, _ = _pieces(edges[counts == 1])
+    return max(0, (2 * parts - holes - (vertices - len(edges) + len(faces))) // 2)
+
+
+def _pieces(edges: NDArray[np.integer]) -> tuple[int, int]:
+    """How many pieces edges hang together in, and how many vertices they have."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    used, ends = np.unique(edges, return_inverse=True)
+    if not len(used):
+        return 0, 0
+    first, second = ends.reshape(-1, 2).T
+    table = coo_matrix((np.ones(len(first)), (first, second)), shape=(len(used), len(used)))
+    return int(connected_components(table, directed=False)[0]), len(used)
 
 
 def _detour(
@@ -165,6 +207,23 @@ def counterparts(source: tuple[Array, Faces], target: tuple[Array, Faces]) -> Co
         # One mesh that moves: every vertex is its own counterpart.
         same = _picked(len(source[0]))
         return same, target[0][same]
+    matched = _matched(source, target)
+    return None if matched is None else _counterparts(source, target, *matched)
+
+
+def end_places(source: tuple[Array, Faces], target: tuple[Array, Faces]) -> Counterparts | None:
+    """Where the ends of a body's limbs are in the other: as ``counterparts``, but of the ends (e,) alone, exactly."""
+    matched = _matched(source, target)
+    if matched is None:
+        return None
+    ours, theirs, (mine, other) = matched
+    return ours.vertices[mine], target[0][theirs.vertices[other]]
+
+
+def _matched(
+    source: tuple[Array, Faces], target: tuple[Array, Faces]
+) -> tuple[Ends, Ends, tuple[list[int], list[int]]] | None:
+    """Ends of both bodies and which is which: straight through hollows where all hang free, else around them."""
     for around in (False, True):
         ours, theirs = (limb_ends(*mesh, around_hollows=around) for mesh in (source, target))
         if ours is None or theirs is None:
@@ -172,7 +231,7 @@ def counterparts(source: tuple[Array, Faces], target: tuple[Array, Faces]) -> Co
         free = min(len(ours.vertices), len(theirs.vertices)) >= FREE_ENDS
         pairs = matched_ends(ours, theirs) if free or around else None
         if pairs is not None:
-            return _counterparts(source, target, ours, theirs, pairs)
+            return ours, theirs, pairs
     return None
 
 
@@ -238,12 +297,14 @@ def matched_ends(ours: Ends, theirs: Ends) -> tuple[list[int], list[int]] | None
     # The nearer to the middle of the body, the less a limb's place depends on the pose.
     share = STATIONS[:-1] / STATIONS[:-1].sum()
     apart = ((few.middles[:, None, :-1] - many.middles[None, :, :-1]) ** 2).sum(axis=3) @ share
+    sizes = np.log(few.sizes[:, None] / many.sizes[None]) ** 2
+    other = SIZES * scale**2 * np.minimum(sizes, OTHER_SIZE).sum(axis=2)
     costs = []
     pairs = np.triu_indices(len(few.vertices), 1)
     for order in itertools.permutations(range(len(many.vertices)), len(few.vertices)):
         unlike = float(np.abs(between[0] - between[1][np.ix_(order, order)])[pairs].mean()) / scale
         if unlike <= UNLIKE:
-            limbs = apart[np.arange(len(order)), order].sum() + (2.0 * scale * unlike) ** 2
+            limbs = (apart + other)[np.arange(len(order)), order].sum() + (2.0 * scale * unlike) ** 2
             trunk = _rigidly_apart(few.middles[:, -1], many.middles[list(order), -1])
             costs.append((limbs + BEGINNINGS * trunk, order))
     costs.sort()

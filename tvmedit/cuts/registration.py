@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tvmedit.cuts.assembly import deform, normal_equations, turn_normals
 from tvmedit.cuts.interpolation import partly
-from tvmedit.cuts.landmarks import Counterparts, counterparts
+from tvmedit.cuts.landmarks import Counterparts, counterparts, end_places
 from tvmedit.cuts.nodes import DeformationGraph, spread_nodes, vertex_normals
 from tvmedit.cuts.rotations import rotation_matrices
 
@@ -33,6 +33,8 @@ ASTRAY_EDGES = 5.0
 """One that is not sure is refused if the way back leads 1 % of the body further astray than so many edge lengths."""
 TWISTED_EDGES = 8.0
 """The same for one that began with the limbs: what moved as far as an arm that is raised turns about itself besides."""
+MET = 0.12
+"""Metres on a person: so near to their places in the target, the ends of limbs have arrived."""
 SLID = 0.35
 """Metres on a person: half of the body further away is another place, not another pose."""
 FEWEST_BACK = 14
@@ -170,9 +172,20 @@ def _found_by_limbs(
         # The way back may be barred: a hand that lies on a hip is one with it. Then the limbs themselves must say.
         vertices, places = there
         apart = float(np.quantile(np.linalg.norm(found.between(1.0)[vertices] - places, axis=1), 0.95))
+        if apart > TWISTED_EDGES * edge and _ends_met(found, source, target, metre):
+            return found
     else:
         apart = _astray(found, returned)
     return found if apart <= TWISTED_EDGES * edge else None
+
+
+def _ends_met(found: Registration, source: tuple[Array, Faces], target: tuple[Array, Faces], metre: float) -> bool:
+    """Whether the ends of all limbs that are told lie on their own: along bent limbs places are told less exactly."""
+    ends = end_places(source, target)
+    if ends is None:
+        return False
+    vertices, places = ends
+    return bool((np.linalg.norm(found.between(1.0)[vertices] - places, axis=1) <= MET * metre).all())
 
 
 def _fitted(
