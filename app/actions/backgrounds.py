@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from app.actions.results import rate
 from app.actions.session import Session
 from app.formats import Picture, write_image, write_mesh, write_video
+from app.formats.atomic import explained, replacing
 from app.stages.depth import background, map_in_world
 from app.stages.results import Masks, World
 from imitation import CameraPath
@@ -52,18 +53,22 @@ def write_depth(session: Session, folder: Path) -> list[Path]:
     known, _ = solved_background(session)
     z = np.concatenate([each.depth[np.isfinite(each.depth)][::37] for each in known.maps])
     near, far = (float(v) for v in np.percentile(z, [1, 99]))
-    folder.mkdir(parents=True, exist_ok=True)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(f"The maps cannot be written to {folder}: it is a file, not a folder.")
+    with explained(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     written = []
     for each in known.maps:
         written.append(folder / f"depth-{each.frame:05d}.png")
         write_image(written[-1], false_colour(each.depth, near, far))
     written.append(folder / "depth.npz")
-    np.savez_compressed(
-        written[-1],
-        frames=np.array([each.frame for each in known.maps]),
-        depth=np.stack([each.depth for each in known.maps]),
-        confidence=np.stack([each.confidence for each in known.maps]),
-    )
+    with replacing(written[-1]) as beside:
+        np.savez_compressed(
+            beside,
+            frames=np.array([each.frame for each in known.maps]),
+            depth=np.stack([each.depth for each in known.maps]),
+            confidence=np.stack([each.confidence for each in known.maps]),
+        )
     return written
 
 

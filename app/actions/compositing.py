@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from app.actions.moving import Moving, Placed, animated, floor, placed_contacts, solved_world
 from app.actions.session import Session
 from app.formats import Picture, write_image
+from app.formats.atomic import explained
 from app.stages.results import World
 from app.stages.stage import Stage
 from imitation.errors import InputError, NoSolution
@@ -267,7 +268,8 @@ def write_sheets(
     report = progress or silent
     if folder.exists() and not folder.is_dir():
         raise InputError(f"The pictures cannot be written to {folder}: it is a file, not a folder.")
-    folder.mkdir(parents=True, exist_ok=True)
+    with explained(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     for done, sheet in enumerate(sheets):
         name = f"{first + done:05d}.{form}"
         if form == "exr":

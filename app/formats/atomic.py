@@ -33,6 +33,8 @@ def replacing(path: Path) -> Iterator[Path]:
             raise InputError(f"{path} is a folder, so no file can be written there: choose another name.")
         temporary = path.with_name(f".{path.stem[:80]}.{os.urandom(4).hex()}.part{path.suffix}")
         try:
+            # What cannot be written is told now, not after what goes into it was computed.
+            temporary.touch()
             yield temporary
             with temporary.open("rb+") as file:
                 os.fsync(file.fileno())

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import pytest
 
 from app.actions.sample import sample_folder
 from app.commands.main import BAD_INPUT, DONE, STOPPED, run
+from imitation.errors import InputError
 
 CLIP, MESH = sample_folder() / "clip.mp4", sample_folder() / "hound.ply"
 
@@ -115,3 +117,25 @@ def test_a_demonstration_that_is_stopped_goes_on(sent: signal.Signals, tmp_path:
         assert "stack trace" not in said
         assert not list(tmp_path.rglob("*.part*"))
     assert subprocess.run([*program, "info", str(tmp_path / "sample")], capture_output=True, check=True).stdout
+
+
+def test_a_demonstration_that_was_cut_off_at_its_beginning_begins_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A full disk, or a kill, may leave the project without the sample in it: the next run brings it in."""
+    from app.actions.session import Session
+    from app.commands import demo
+
+    fill = demo.fill_with_sample
+
+    def full(session: Session, *, copy: bool) -> None:
+        raise InputError("The disk is full.")
+
+    monkeypatch.setattr(demo, "fill_with_sample", full)
+    monkeypatch.setattr(demo, "together", lambda *_: [[], []])
+    assert "full" in refused(capsys, "demo", tmp_path)
+    monkeypatch.setattr(demo, "fill_with_sample", fill)
+    for _ in range(2):
+        assert run(["--quiet", "demo", str(tmp_path)]) == DONE
+        with closing(Session.open(tmp_path / "sample")) as session:
+            assert len(session.document.characters) == 2
