@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import attrs
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ Picture = NDArray[np.uint8]
 SUPPORT = 2.5  # grey levels of disagreement that one more key frame with the same depth outweighs
 AGAINST = 8.0  # grey levels that a key frame counts against a depth that it sees through
 ASKED = 3000  # points of a picture that are asked how bright it is
+SEEN = 4  # frames that must see a place, or else those speak too that see something nearer: depth may be wrong
 UNSEEN = 40.0  # disagreement of a depth that fewer than two frames can judge
 
 
@@ -56,22 +58,47 @@ def gains(
     return scale
 
 
+@attrs.frozen(eq=False)
+class Lenders:
+    """Frames that lend a frame their colours.
+
+    Attributes
+    ----------
+    stack : uint8 RGB (n, h, w, 3). hidden : uint8 (n, h, w), 1 on the subject and its rim. poses : their cameras.
+    scale : (n, 3) factors to the frame's exposure.
+    front : (n, h', w') inverse depth of what each of them sees, at a size of its own, 0 where not known.
+    margin : difference of inverse depths by which something there must be nearer to hide what is asked for.
+    """
+
+    stack: Picture
+    hidden: NDArray[np.uint8]
+    poses: Sequence[Camera]
+    scale: NDArray[np.float32]
+    front: NDArray[np.float32]
+    margin: float
+
+    def of(self, use: Sequence[int]) -> Lenders:
+        """Some of them, in this order."""
+        return attrs.evolve(
+            self, stack=self.stack[use], hidden=self.hidden[use], poses=[self.poses[k] for k in use],
+            scale=self.scale[use], front=self.front[use],
+        )  # fmt: skip
+
+
 def choose_depth(
     rows: NDArray[np.int64],
     columns: NDArray[np.int64],
     loose: NDArray[np.float32],
     firm: NDArray[np.float32],
     camera: Camera,
-    stack: Picture,
-    hidden: Picture,
-    poses: Sequence[Camera],
-    scale: NDArray[np.float32],
+    lenders: Lenders,
     tolerance: float,
     known: NDArray[np.float32],
     knowing: Sequence[Camera],
 ) -> NDArray[np.float32]:
     """Choose for each pixel (k,) the inverse depth at which the frames that see it agree best in colour.
 
+    All frames speak here, those too that see something nearer: what stands before the far is to be found as well.
     Where colours do not tell, on a weak texture, what key frames see through cannot be there.
 
     Parameters
@@ -80,12 +107,12 @@ def choose_depth(
     tolerance : difference of inverse depths that counts as the same.
     known, knowing : (n, h, w) inverse depths of key frames, 0 where none, and their cameras.
     """
-    maps = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in poses])
+    maps = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in lenders.poses])
     keys = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in knowing])
     result = np.zeros(len(rows), np.float32)
     _choose(
-        rows, columns, loose, firm, maps.A, maps.b, stack, hidden, scale, np.float32(tolerance), known, keys.A, keys.b,
-        result,
+        rows, columns, loose, firm, maps.A, maps.b, lenders.stack, lenders.hidden, lenders.scale, np.float32(tolerance),
+        known, keys.A, keys.b, result,
     )  # fmt: skip
     return result
 
@@ -95,23 +122,69 @@ def gather(
     columns: NDArray[np.int64],
     inverse: NDArray[np.float32],
     camera: Camera,
-    stack: Picture,
-    hidden: Picture,
-    poses: Sequence[Camera],
-    scale: NDArray[np.float32],
+    lenders: Lenders,
     nearest: int,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """Colour (k, 3) of background points: the median over the ``nearest`` frames that see them; how many those are."""
-    maps = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in poses])
+    """Colour (k, 3) of background points: the median over the ``nearest`` frames that see them; how many those are.
+
+    A frame that sees something nearer in the place shows that, not the point; where all but a few do, depth is not
+    believed.
+    """
+    maps = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in lenders.poses])
     colour = np.zeros((len(rows), 3), np.float32)
     count = np.zeros(len(rows), np.int32)
-    _gather(rows, columns, inverse, maps.A, maps.b, stack, hidden, scale, nearest, colour, count)
+    _gather(
+        rows, columns, inverse, maps.A, maps.b, lenders.stack, lenders.hidden, lenders.scale, lenders.front,
+        np.float32(lenders.margin), min(SEEN, nearest), nearest, colour, count,
+    )  # fmt: skip
     return colour, count
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _samples(x: int, y: int, w: Any, A: Any, b: Any, stack: Any, hidden: Any, scale: Any, most: int, out: Any) -> int:
-    """Colours (m, 3) of a point in the first ``most`` frames that see it; how many."""
+def _before(front: Any, u: Any, v: Any, width: int, height: int, w: Any, margin: Any) -> bool:
+    """Whether a frame sees something nearer at a pixel (or right beside it: depth ends a little astray)."""
+    high, wide = front.shape
+    i = int((u + 0.5) * wide / width)
+    j = int((v + 0.5) * high / height)
+    for y in range(max(0, j - 1), min(high, j + 2)):
+        for x in range(max(0, i - 1), min(wide, i + 2)):
+            if front[y, x] > w + margin:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _weights(q: Any) -> Any:
+    """Catmull and Rom's weights of four neighbours, at a share of the way between the middle two."""
+    return (
+        0.5 * q * (-1 + q * (2 - q)), 1 + 0.5 * q * q * (3 * q - 5), 0.5 * q * (1 + q * (4 - 3 * q)),
+        0.5 * q * q * (q - 1),
+    )  # fmt: skip
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _bent(picture: Any, x: int, y: int, q: Any, r: Any, channel: int) -> Any:
+    """A picture between its pixels by 4 x 4 of them: sharper than a straight line, by which fills went soft."""
+    a, b, c, d = _weights(q)
+    down = _weights(r)
+    total = 0.0
+    for j in range(4):
+        total += down[j] * (
+            a * picture[y + j - 1, x - 1, channel] + b * picture[y + j - 1, x, channel]
+            + c * picture[y + j - 1, x + 1, channel] + d * picture[y + j - 1, x + 2, channel]
+        )  # fmt: skip
+    return min(max(total, 0.0), 255.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _samples(
+    x: int, y: int, w: Any, A: Any, b: Any, stack: Any, hidden: Any, scale: Any, front: Any, margin: Any, tested: bool,
+    fine: bool, most: int, out: Any,
+) -> int:  # fmt: skip
+    """Colours (m, 3) of a point in the first ``most`` frames that see it; how many.
+
+    Tested: not in those that see something nearer there. Fine: by 4 x 4 pixels.
+    """
     count = 0
     height, width = stack.shape[1], stack.shape[2]
     for n in range(stack.shape[0]):
@@ -125,11 +198,18 @@ def _samples(x: int, y: int, w: Any, A: Any, b: Any, stack: Any, hidden: Any, sc
         iu, iv = int(u), int(v)
         if hidden[n, iv, iu] or hidden[n, iv, iu + 1] or hidden[n, iv + 1, iu] or hidden[n, iv + 1, iu + 1]:
             continue
+        if tested and _before(front[n], u, v, width, height, w / z, margin):
+            continue
         q, r = u - iu, v - iv
+        inner = iu > 0 and iv > 0 and iu < width - 2 and iv < height - 2
         for c in range(3):
-            top = (1 - q) * stack[n, iv, iu, c] + q * stack[n, iv, iu + 1, c]
-            low = (1 - q) * stack[n, iv + 1, iu, c] + q * stack[n, iv + 1, iu + 1, c]
-            out[count, c] = ((1 - r) * top + r * low) * scale[n, c]
+            if fine and inner:
+                value = _bent(stack[n], iu, iv, q, r, c)
+            else:
+                top = (1 - q) * stack[n, iv, iu, c] + q * stack[n, iv, iu + 1, c]
+                low = (1 - q) * stack[n, iv + 1, iu, c] + q * stack[n, iv + 1, iu + 1, c]
+                value = (1 - r) * top + r * low
+            out[count, c] = value * scale[n, c]
         count += 1
         if count == most:
             break
@@ -202,7 +282,9 @@ def _choose(
             if earlier:
                 continue
             middle = total / number if number > 0 else w
-            count = _samples(columns[k], rows[k], middle, A, b, stack, hidden, scale, 8, values)
+            count = _samples(
+                columns[k], rows[k], middle, A, b, stack, hidden, scale, known, np.float32(0), False, False, 8, values
+            )  # fmt: skip
             cost = np.float32(UNSEEN)
             if count >= 2:
                 cost = np.float32(0)
@@ -222,14 +304,17 @@ def _choose(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _gather(
-    rows: Any, columns: Any, inverse: Any, A: Any, b: Any, stack: Any, hidden: Any, scale: Any, nearest: int,
-    colour: Any, seen: Any,
+    rows: Any, columns: Any, inverse: Any, A: Any, b: Any, stack: Any, hidden: Any, scale: Any, front: Any, margin: Any,
+    least: int, nearest: int, colour: Any, seen: Any,
 ) -> None:  # fmt: skip
     values, work = np.empty((nearest, 3), np.float32), np.empty(nearest, np.float32)
     for k in range(len(rows)):
         if inverse[k] <= 0:
             continue
-        count = _samples(columns[k], rows[k], inverse[k], A, b, stack, hidden, scale, nearest, values)
+        here = columns[k], rows[k], inverse[k]
+        count = _samples(*here, A, b, stack, hidden, scale, front, margin, True, True, nearest, values)
+        if count < least:
+            count = _samples(*here, A, b, stack, hidden, scale, front, margin, False, True, nearest, values)
         seen[k] = count
         for c in range(3):
             if count > 0:
