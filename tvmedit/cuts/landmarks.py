@@ -140,8 +140,11 @@ def handle_count(faces: Faces) -> int:
     By the characteristic of Euler: vertices less edges plus faces are two for each closed part, less two for each
     handle and one for each hole.
     """
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    edges, counts = np.unique(edges, axis=0, return_counts=True)
+    ends = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1).astype(np.int64)
+    # One number for each edge: rows are slow to tell apart.
+    size = int(ends.max(initial=0)) + 1
+    names, counts = np.unique(ends[:, 0] * size + ends[:, 1], return_counts=True)
+    edges = np.stack(np.divmod(names, size), axis=1)
     parts, vertices = _pieces(edges)
     holes, _ = _pieces(edges[counts == 1])
     return max(0, (2 * parts - holes - (vertices - len(edges) + len(faces))) // 2)
