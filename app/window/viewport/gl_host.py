@@ -9,10 +9,30 @@ import pyvista as pv
 from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from pyvistaqt import QtInteractor
+from vtkmodules.vtkRenderingCore import vtkCoordinate, vtkPolyDataMapper2D, vtkTexturedActor2D
 
 from app.window.viewport.background import Background
 from app.window.viewport.lens import Lens
 from app.window.viewport.scene import Scene
+
+
+def _veil() -> vtkTexturedActor2D:
+    """A sheet over the whole view: the background is drawn on it once more, so that what lies before it is see-through.
+
+    The character fades as one picture: its far side is not seen through its near one.
+    """
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    sheet = pv.PolyData(corners, np.array([4, 0, 1, 2, 3]))
+    sheet.active_texture_coordinates = corners[:, :2]
+    place = vtkCoordinate()
+    place.SetCoordinateSystemToNormalizedViewport()
+    mapper = vtkPolyDataMapper2D()
+    mapper.SetInputData(sheet)
+    mapper.SetTransformCoordinate(place)
+    veil = vtkTexturedActor2D()
+    veil.SetMapper(mapper)
+    veil.SetVisibility(False)
+    return veil
 
 
 class GlHost(QWidget):
@@ -30,6 +50,8 @@ class GlHost(QWidget):
         layout.addWidget(self.plotter)
         self.scene = Scene(self.plotter)
         self.background = Background()
+        self._veil = _veil()
+        self.plotter.renderer.AddViewProp(self._veil)
         self._drawn: tuple[object, ...] = ()
         self._behind: QImage | None = None
         self._samples = 0
@@ -51,7 +73,8 @@ class GlHost(QWidget):
 
     def _texture(self, size: tuple[int, int]) -> None:
         picture = self.background.picture
-        wanted = (None if picture is None else picture.cacheKey(), self.background.view, size)
+        opacity = self.background.mesh_opacity
+        wanted = (None if picture is None else picture.cacheKey(), self.background.view, size, opacity)
         if wanted == self._drawn:
             return
         self._drawn = wanted
@@ -61,9 +84,14 @@ class GlHost(QWidget):
         painter.end()
         stride = image.bytesPerLine()
         rows = np.frombuffer(image.constBits(), np.uint8).reshape(size[1], stride)[:, : 3 * size[0]]
+        behind = rows.reshape(size[1], size[0], 3)
         renderer = self.plotter.renderer
-        renderer.SetBackgroundTexture(pv.Texture(np.ascontiguousarray(rows.reshape(size[1], size[0], 3))))
+        renderer.SetBackgroundTexture(pv.Texture(np.ascontiguousarray(behind)))
         renderer.SetTexturedBackground(True)
+        self._veil.SetVisibility(opacity < 1.0)
+        if opacity < 1.0:
+            share = np.full((*behind.shape[:2], 1), round(255 * (1.0 - opacity)), np.uint8)
+            self._veil.SetTexture(pv.Texture(np.concatenate([behind, share], axis=2)))
 
     def finish(self) -> None:
         """Close the render window; nothing can be drawn afterwards."""
