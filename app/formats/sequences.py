@@ -28,8 +28,8 @@ from imitation.progress import Progress, part, silent
 Form = Literal["ply", "obj", "glb", "usd", "npz"]
 NPZ_DAMAGE = (
     OSError, EOFError, ValueError, KeyError, IndexError, TypeError, AttributeError, ArithmeticError, MemoryError,
-    SyntaxError, RecursionError, NotImplementedError, RuntimeError, tokenize.TokenError, zipfile.BadZipFile,
-    zipfile.LargeZipFile,
+    SyntaxError, SystemError, RecursionError, NotImplementedError, RuntimeError, tokenize.TokenError,
+    zipfile.BadZipFile, zipfile.LargeZipFile,
 )  # fmt: skip
 """What reading a damaged archive comes to."""
 DECOMPRESSORS = ("zlib", "_lzma", "lzma", "_bz2", "bz2")

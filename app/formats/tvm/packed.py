@@ -18,8 +18,10 @@ from app.formats.tvm.frames import FrameMesh, MeshFrames
 from imitation.errors import InputError
 
 SMALL = 1 << 16
-DAMAGE = (OSError, ValueError, KeyError, IndexError, TypeError, AttributeError, ZeroDivisionError, OverflowError)
-"""What reading a damaged archive comes to."""
+DAMAGE = (
+    OSError, ValueError, KeyError, IndexError, TypeError, AttributeError, ZeroDivisionError, OverflowError, SystemError,
+)  # fmt: skip
+"""What reading a damaged archive comes to; SystemError is text of characters that there are not."""
 LARGEST = 1 << 38
 """Bytes that one array may have when it is unpacked."""
 

@@ -113,6 +113,18 @@ def test_a_character_npz_of_any_content(part: str, content: Any, tmp_path: Path)
         assert len(read_sequence(tmp_path / "film.npz")) == 2
 
 
+@pytest.mark.parametrize("part", ["up", "name"])
+def test_an_npz_with_text_of_impossible_characters(part: str, tmp_path: Path) -> None:
+    """Beyond the last character there is, Python has no message of its own but a SystemError."""
+    places = np.zeros((2, 4, 3), np.float32) + MESH.vertices
+    text = np.array([0x7FFFFFFF], "<u4").view("<U1")
+    np.savez(tmp_path / "film.npz", vertices=places, faces=MESH.faces, fps=[25, 1], **{part: text})
+    with contextlib.suppress(InputError):
+        assert len(read_sequence(tmp_path / "film.npz")) == 2
+    with contextlib.suppress(InputError), open_mesh_frames(tmp_path / "film.npz") as frames:
+        assert len(frames) == 2
+
+
 @pytest.mark.parametrize("method", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
 def test_a_character_npz_whose_compressed_bytes_are_spoilt(method: int, tmp_path: Path) -> None:
     """Each decompressor has exceptions of its own."""
