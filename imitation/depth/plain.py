@@ -41,7 +41,7 @@ def plain_surfaces(picture: NDArray[np.uint8], hidden: NDArray[np.uint8]) -> tup
         smooth = cv2.bilateralFilter(smooth, 7, sigma, 2.5)
     kernel = np.ones((3, 3), np.uint8)
     uneven = cv2.absdiff(cv2.dilate(smooth, kernel), cv2.erode(smooth, kernel)).max(axis=-1)
-    names, count = _numbered((uneven <= EVEN) & shown)
+    names, count = _numbered((uneven <= EVEN) & shown, max(hidden.shape))
     return _with_rims(names, smooth, shown), count
 
 
@@ -57,22 +57,28 @@ def parts_of(names: NDArray[np.int32], picture: NDArray[np.uint8]) -> tuple[NDAr
     """
     import cv2
 
-    shown = names > 0
-    calm = np.where(shown[..., None], picture, np.uint8(128))
+    parts = np.zeros_like(names)
+    rows, columns = np.flatnonzero(names.any(axis=1)), np.flatnonzero(names.any(axis=0))
+    if not len(rows):
+        return parts, 0
+    box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    shown = names[box] > 0
+    calm = np.where(shown[..., None], picture[box], np.uint8(128))
     for _ in range(3):
         calm = cv2.medianBlur(calm, 5)
     kernel = np.ones((2 * RIM + 1, 2 * RIM + 1), np.uint8)
     uneven = cv2.absdiff(cv2.dilate(calm, kernel), cv2.erode(calm, kernel)).max(axis=-1)
-    parts, count = _numbered((uneven <= STEP) & shown)
-    return _with_rims(parts, calm, shown, STEP), count
+    found, count = _numbered((uneven <= STEP) & shown, max(names.shape))
+    parts[box] = _with_rims(found, calm, shown, STEP)
+    return parts, count
 
 
-def _numbered(even: NDArray[np.bool_]) -> tuple[NDArray[np.int32], int]:
-    """The connected areas of a picture (h, w) that are large enough, from 1; how many there are."""
+def _numbered(even: NDArray[np.bool_], longest: int) -> tuple[NDArray[np.int32], int]:
+    """The connected areas (h, w) that are large enough in a picture so long, from 1; how many there are."""
     import cv2
 
     count, found, statistics, _ = cv2.connectedComponentsWithStats(even.astype(np.uint8), connectivity=4)
-    least = SMALLEST * (max(even.shape) / 480) ** 2
+    least = SMALLEST * (longest / 480) ** 2
     kept = np.zeros(count, np.int32)
     large = np.flatnonzero(statistics[1:, cv2.CC_STAT_AREA] >= least) + 1
     kept[large] = np.arange(1, len(large) + 1)
