@@ -35,7 +35,7 @@ def world(document: Document) -> Stage:
     """The camera path with Z up and in metres, as far as they are known."""
     seen = document.world.seen
     marked = tuple(tracking.track(document, document.track(each)) for each in seen.tracks) if seen is not None else ()
-    return Stage("world", "Finding the ground", _world, (document.world,), (cameras(document), *marked), weight=0.2)
+    return Stage("world", "Finding the ground", _world, (document.world,), (cameras(document), *marked), 2, weight=0.2)
 
 
 @once

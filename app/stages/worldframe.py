@@ -242,6 +242,7 @@ def _support(ground: Any) -> float:
 def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
     """Give the ground plane in the cameras' world, None where there is none, and how it was found."""
     from imitation.cameras import plane_ground
+    from imitation.cameras.levels import recovered_ground
 
     if choice.ground == "depth":
         return None, "a constant depth is assumed"
@@ -255,7 +256,7 @@ def _plane(choice: WorldChoice, path: CameraPath) -> tuple[Any, str]:
             raise InputError("There are no recovered points to lay a plane through: assume a constant depth instead.")
         return None, "no ground is known, a constant depth is assumed"
     try:
-        ground = plane_ground(path.points, up=(0.0, 0.0, 1.0), selected=False)
+        ground = recovered_ground(path)
     except NoSolution:
         return None, "no level ground was found, a constant depth is assumed"
     # A camera held by hand is level sideways, but its pitch is open: the ground says more of what is up.
