@@ -116,7 +116,7 @@ def plate(document: Document, frame: str) -> Stage:
     if clip is None:
         return Stage(f"plate/{frame}", label, _plate, blocked=tracking.NO_CLIP)
     needs = (depth(document), scene.cameras(document), tracking.masks(document))
-    return Stage(f"plate/{frame}", label, _plate, (clip, int(frame)), needs, version=3, weight=0.8)
+    return Stage(f"plate/{frame}", label, _plate, (clip, int(frame)), needs, version=4, weight=0.8)
 
 
 def in_world(depth_: NDArray[np.floating], world: World) -> NDArray[np.float32]:

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from imitation.depth.sweep import geometry
+from imitation.depth.sweep import Geometry, geometry
 from imitation.geometry.projection import Camera
 
 Picture = NDArray[np.uint8]
@@ -68,6 +68,7 @@ class Lenders:
     scale : (n, 3) factors to the frame's exposure.
     front : (n, h', w') inverse depth of what each of them sees, at a size of its own, 0 where not known.
     margin : difference of inverse depths by which something there must be nearer to hide what is asked for.
+    astray : (n, 3, 3) maps of the frame's pixels, to those whose rays each of them shows there; None: as solved.
     """
 
     stack: Picture
@@ -76,12 +77,17 @@ class Lenders:
     scale: NDArray[np.float32]
     front: NDArray[np.float32]
     margin: float
+    astray: NDArray[np.float32] | None = None
+
+    def maps(self, camera: Camera) -> Geometry:
+        """The maps from a camera to them, without what they lie astray."""
+        return geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in self.poses])
 
     def of(self, use: Sequence[int]) -> Lenders:
         """Some of them, in this order."""
         return attrs.evolve(
             self, stack=self.stack[use], hidden=self.hidden[use], poses=[self.poses[k] for k in use],
-            scale=self.scale[use], front=self.front[use],
+            scale=self.scale[use], front=self.front[use], astray=None if self.astray is None else self.astray[use],
         )  # fmt: skip
 
 
@@ -107,7 +113,7 @@ def choose_depth(
     tolerance : difference of inverse depths that counts as the same.
     known, knowing : (n, h, w) inverse depths of key frames, 0 where none, and their cameras.
     """
-    maps = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in lenders.poses])
+    maps = lenders.maps(camera)
     keys = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in knowing])
     result = np.zeros(len(rows), np.float32)
     _choose(
@@ -130,18 +136,44 @@ def gather(
     A frame that sees something nearer in the place shows that, not the point; where all but a few do, depth is not
     believed.
     """
-    maps = geometry((camera.K, camera.R, camera.T), [(p.K, p.R, p.T) for p in lenders.poses])
+    maps = lenders.maps(camera)
+    A = maps.A if lenders.astray is None else np.ascontiguousarray(maps.A @ lenders.astray)
     colour = np.zeros((len(rows), 3), np.float32)
     count = np.zeros(len(rows), np.int32)
     _gather(
-        rows, columns, inverse, maps.A, maps.b, lenders.stack, lenders.hidden, lenders.scale, lenders.front,
+        rows, columns, inverse, A, maps.b, lenders.stack, lenders.hidden, lenders.scale, lenders.front,
         np.float32(lenders.margin), min(SEEN, nearest), nearest, colour, count,
     )  # fmt: skip
     return colour, count
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _before(front: Any, u: Any, v: Any, width: int, height: int, w: Any, margin: Any) -> bool:
+def placed(A: Any, b: Any, x: Any, y: Any, w: Any) -> Any:
+    """Where a frame shows a pixel's point of an inverse depth: x, y, and the share of its depth, above 0 in front."""
+    z = A[2, 0] * x + A[2, 1] * y + A[2, 2] + w * b[2]
+    return (A[0, 0] * x + A[0, 1] * y + A[0, 2] + w * b[0]) / z, (A[1, 0] * x + A[1, 1] * y + A[1, 2] + w * b[1]) / z, z
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def shown(hidden: Any, u: Any, v: Any) -> bool:
+    """Whether all four pixels round a place lie in the frame and show background."""
+    height, width = hidden.shape
+    if not (u >= 0 and v >= 0 and u < width - 1.001 and v < height - 1.001):
+        return False
+    i, j = int(u), int(v)
+    return not (hidden[j, i] or hidden[j, i + 1] or hidden[j + 1, i] or hidden[j + 1, i + 1])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def straight(picture: Any, x: int, y: int, q: Any, r: Any, channel: int) -> Any:
+    """A picture between its pixels, along straight lines."""
+    top = (1 - q) * picture[y, x, channel] + q * picture[y, x + 1, channel]
+    low = (1 - q) * picture[y + 1, x, channel] + q * picture[y + 1, x + 1, channel]
+    return (1 - r) * top + r * low
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def nearer_before(front: Any, u: Any, v: Any, width: int, height: int, w: Any, margin: Any) -> bool:
     """Whether a frame sees something nearer at a pixel (or right beside it: depth ends a little astray)."""
     high, wide = front.shape
     i = int((u + 0.5) * wide / width)
@@ -188,27 +220,16 @@ def _samples(
     count = 0
     height, width = stack.shape[1], stack.shape[2]
     for n in range(stack.shape[0]):
-        z = A[n, 2, 0] * x + A[n, 2, 1] * y + A[n, 2, 2] + w * b[n, 2]
-        if z <= 0:
-            continue
-        u = (A[n, 0, 0] * x + A[n, 0, 1] * y + A[n, 0, 2] + w * b[n, 0]) / z
-        v = (A[n, 1, 0] * x + A[n, 1, 1] * y + A[n, 1, 2] + w * b[n, 1]) / z
-        if not (u >= 0 and v >= 0 and u < width - 1.001 and v < height - 1.001):
+        u, v, z = placed(A[n], b[n], x, y, w)
+        if not (z > 0 and shown(hidden[n], u, v)):
             continue
         iu, iv = int(u), int(v)
-        if hidden[n, iv, iu] or hidden[n, iv, iu + 1] or hidden[n, iv + 1, iu] or hidden[n, iv + 1, iu + 1]:
-            continue
-        if tested and _before(front[n], u, v, width, height, w / z, margin):
+        if tested and nearer_before(front[n], u, v, width, height, w / z, margin):
             continue
         q, r = u - iu, v - iv
         inner = iu > 0 and iv > 0 and iu < width - 2 and iv < height - 2
         for c in range(3):
-            if fine and inner:
-                value = _bent(stack[n], iu, iv, q, r, c)
-            else:
-                top = (1 - q) * stack[n, iv, iu, c] + q * stack[n, iv, iu + 1, c]
-                low = (1 - q) * stack[n, iv + 1, iu, c] + q * stack[n, iv + 1, iu + 1, c]
-                value = (1 - r) * top + r * low
+            value = _bent(stack[n], iu, iv, q, r, c) if fine and inner else straight(stack[n], iu, iv, q, r, c)
             out[count, c] = value * scale[n, c]
         count += 1
         if count == most:

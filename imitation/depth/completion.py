@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from imitation.cameras.path import CameraPath
+from imitation.depth.alignment import aligned
 from imitation.depth.colours import Lenders, choose_depth, gains, gather
 from imitation.depth.depthmap import DepthMap, resized, scaled_camera
 from imitation.depth.filling import extended, nearest_of, seamless, touched, voted
@@ -17,7 +18,7 @@ from imitation.depth.pictures import GROWTH, Pictures
 from imitation.depth.projection import consensus, inverse_of, projected_inverse
 from imitation.depth.rim import between_parts, depth_along
 from imitation.depth.shadow import DARK, darkest_round, round_subject, shadow_of
-from imitation.depth.sharpness import LEAST, blurred_alike, sharp_first, speeds
+from imitation.depth.sharpness import LEAST, blurred_alike, ring_of, sharp_first, speeds
 from imitation.errors import InputError
 from imitation.geometry.projection import Array, Camera
 
@@ -130,6 +131,9 @@ class Background:
         lenders = self._lenders(donors, picture, hole, inverse, frame)
         rows, columns = np.nonzero(wanted)
         found = self._behind(frame, wanted, lenders)[rows, columns]
+        if hole.any():
+            ring = ring_of(hole, inverse > 0)
+            lenders = attrs.evolve(lenders, astray=aligned(picture, ring, inverse, self.camera(frame), lenders))
 
         def coloured(
             rows: NDArray[np.int64], columns: NDArray[np.int64], at: NDArray[np.float32], least: int = 0,
