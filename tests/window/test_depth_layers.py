@@ -58,7 +58,8 @@ def show_background(shell: Shell, kind: str) -> Any:
     if not shell.video.shown.background:
         QTest.keyClick(shell, Qt.Key.Key_7, ALT)
     QTest.mouseClick(shell.video.background.bar.kinds[kind], LEFT)
-    wait_for(lambda: shell.video.shown.backdrop is not None)
+    # The first one is computed, and on a new machine its kernels are compiled before that.
+    wait_for(lambda: shell.video.shown.backdrop is not None, 90)
     settle()
     return shell.video.shown.backdrop
 
