@@ -86,8 +86,9 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
         from app.window.shell import Shell
 
         session, refused = _first(path, sample)
-        shell = Shell(session, viewport=viewport or settings.viewport())
-        if settings.expects_opengl(viewport or settings.viewport()):
+        choice = viewport or settings.viewport()
+        shell = Shell(session, viewport=choice)
+        if settings.expects_opengl(choice):
             from app.window.viewport import hosts
 
             hosts.await_opengl(shell)
@@ -100,7 +101,7 @@ def open_window(path: Path | None = None, *, sample: bool = False, viewport: Cho
     elif path is not None and not session.titled:
         shell.files.take(path)
     shell.care.offer_never_saved()
-    _after(lambda: load_slow_libraries(viewport or settings.viewport()))
+    _after(lambda: load_slow_libraries(choice))
     return application.exec()
 
 

@@ -219,7 +219,8 @@ def map_key_frames(
                 if least(best[1]) >= ENOUGH or begin is None:
                     break
                 tried.append(begin)
-            return best[0] if best is not None else None
+            assert best is not None  # an attempt without a model has returned
+            return best[0]
     finally:
         pycolmap.logging.minloglevel = before
 

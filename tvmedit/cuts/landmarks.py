@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tvmedit.cuts.nodes import adjacency, vertex_normals
+from tvmedit.features.measure import vertex_areas
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int32]
@@ -116,16 +117,9 @@ def limb_ends(vertices: Array, faces: Faces, *, around_hollows: bool = True) -> 
     middles = np.array([_middle_line(vertices, row, out, out[end]) for row, end in zip(rows, chosen, strict=True)])
     if not np.isfinite(middles).all():
         return None
-    area = _areas(vertices, faces)
+    area, _ = vertex_areas(vertices, faces)
     sizes = (distances[:, :, None] < AROUND_ENDS * reach).transpose(0, 2, 1) @ area / area.sum()
     return Ends(distances, np.array(chosen), reach, middles, sizes)
-
-
-def _areas(vertices: Array, faces: Faces) -> Array:
-    """Surface that belongs to each vertex: a third of its triangles'."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
-    return np.asarray(np.bincount(faces.ravel(), weights=np.repeat(third, 3), minlength=len(vertices)), np.float64)
 
 
 def limb_count(vertices: Array, faces: Faces) -> int:

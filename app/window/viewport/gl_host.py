@@ -53,7 +53,6 @@ class GlHost(QWidget):
         self._veil = _veil()
         self.plotter.renderer.AddViewProp(self._veil)
         self._drawn: tuple[object, ...] = ()
-        self._behind: QImage | None = None
         self._samples = 0
         self.renders = 0
 
