@@ -8,12 +8,16 @@ import pytest
 
 from app.commands.main import run
 from tests.app.filmed import write_film
+from tests.support.once import built_once
 
 
 @pytest.fixture(scope="session")
 def solved_project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A project made and solved through the command line; not to be changed, copy it."""
-    folder = tmp_path_factory.mktemp("film")
+    return built_once(tmp_path_factory, "film", _solve)
+
+
+def _solve(folder: Path) -> Path:
     film, _, marks = write_film(folder)
     project = folder / "film.motionwright"
     assert run(["new", str(project), "--clip", str(film), "--marks", str(marks)]) == 0

@@ -24,6 +24,7 @@ from app.window.settings import settings
 from app.window.shell import Shell
 from app.window.viewport import hosts
 from app.window.viewport.hosts import Choice
+from tests.support.once import built_once
 from tests.window.small_project import build_small_project
 
 hypothesis.settings.register_profile("window", deadline=None)
@@ -110,6 +111,8 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
         qapp.processEvents()
         qapp.sendPostedEvents(None, 52)
     gc.collect()
+    # What is left now is the libraries and what tests share: the next search need not go through it again.
+    gc.freeze()
     end = time.monotonic() + 3
     while (left := [each for each in threading.enumerate() if each not in threads]) and time.monotonic() < end:
         time.sleep(0.02)
@@ -140,7 +143,7 @@ def keys_of_its_own(
 @pytest.fixture(scope="session")
 def small_project(tmp_path_factory: pytest.TempPathFactory, private_places: None) -> Path:
     """A project folder with a short clip, tracks, contacts, known cameras and a paired character; all solved."""
-    return build_small_project(tmp_path_factory.mktemp("small"))
+    return built_once(tmp_path_factory, "small", build_small_project)
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ from app.actions.session import Session
 from app.model.edits import performance
 from app.model.performance import KeyMotion
 from app.window.shell import Shell
+from tests.support.once import built_once
 from tests.window.conftest import settle, wait_for
 from tests.window.small_performance import build_small_performance
 
@@ -28,7 +29,12 @@ CONTROL = Qt.KeyboardModifier.ControlModifier
 @pytest.fixture(scope="session")
 def composed_project(tmp_path_factory: pytest.TempPathFactory, private_places: None) -> Path:
     """Two sequences, three key motions, everything computed."""
-    path = build_small_performance(tmp_path_factory.mktemp("composed"))
+    analysed = built_once(tmp_path_factory, "moves", build_small_performance)
+    return built_once(tmp_path_factory, "composed", lambda folder: _compose(analysed, folder / analysed.name))
+
+
+def _compose(analysed: Path, path: Path) -> Path:
+    shutil.copytree(analysed, path)
     session = Session.open(path)
     graph: Any = session.result(session.stages.graph)
     named = performing.motions(session.document, graph)

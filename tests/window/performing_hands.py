@@ -14,6 +14,7 @@ from app.actions.session import Session
 from app.window.performance.blocks import Block, box
 from app.window.shell import Shell
 from app.window.timeline.lanes import RULER
+from tests.support.once import built_once
 from tests.window.conftest import at, settle, wait_for
 from tests.window.small_performance import build_small_performance
 
@@ -100,7 +101,7 @@ class PerformingHands:
 @pytest.fixture(scope="session")
 def analysed(tmp_path_factory: pytest.TempPathFactory, private_places: None) -> Path:
     """A project of two takes with its motion graph."""
-    return build_small_performance(tmp_path_factory.mktemp("moves"))
+    return built_once(tmp_path_factory, "moves", build_small_performance)
 
 
 @pytest.fixture

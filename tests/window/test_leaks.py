@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import shutil
 import threading
 from collections import Counter
 from collections.abc import Callable
@@ -15,6 +16,7 @@ from PySide6.QtWidgets import QApplication
 from app.actions.session import Session
 from app.window.shell import Shell
 from app.window.viewport import Viewport
+from tests.support.once import built_once
 from tests.window.conftest import settle, wait_for
 from tests.window.small_performance import build_small_performance
 
@@ -60,10 +62,13 @@ def test_ten_windows_leave_nothing(session: Session, qapp: QApplication, monkeyp
     open_and_close(place, look)
 
 
-def test_ten_motion_graphs_leave_nothing(qapp: QApplication, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ten_motion_graphs_leave_nothing(
+    qapp: QApplication, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Each shows the graph, composes, plays what is composed in 3D, and is closed while it is still placed."""
     monkeypatch.setattr("app.window.files.ask_unsaved", lambda *_: "discard")
-    place = build_small_performance(tmp_path)
+    analysed = built_once(tmp_path_factory, "moves", build_small_performance)
+    place = shutil.copytree(analysed, tmp_path / analysed.name)
 
     def look(shell: Shell) -> None:
         page = shell.performance
