@@ -15,7 +15,7 @@ from tests.benchmarks.record import Recorder, cpu_seconds
 from tests.tvmedit.test_paths import every_path, random_weights
 from tvmedit.cuts import GroundMove, Registration, align_frames
 from tvmedit.cuts.placement import joint_move
-from tvmedit.cuts.registration import mesh_volume
+from tvmedit.cuts.surface import mesh_volume
 from tvmedit.features.measure import surface_samples
 from tvmedit.graph.lengths import LengthSearch
 from tvmedit.graph.search import path_key

@@ -10,8 +10,9 @@ import tvmedit
 from resources.performer import body_capsules, body_joints, body_mesh, motion_pose
 from tvmedit.cuts.interpolation import partly
 from tvmedit.cuts.nodes import DeformationGraph
-from tvmedit.cuts.registration import Registration, mesh_volume
+from tvmedit.cuts.registration import Registration
 from tvmedit.cuts.rotations import rotation_matrices
+from tvmedit.cuts.surface import mesh_volume
 
 Mesh = tuple[np.ndarray, np.ndarray]
 

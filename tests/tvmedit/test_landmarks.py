@@ -9,7 +9,8 @@ from scipy.spatial import cKDTree
 import tvmedit
 from resources.performer import Part, body_capsules, body_joints, body_mesh, motion_pose, perform
 from tests.benchmarks.carried import worst_steps
-from tvmedit.cuts.landmarks import counterparts, end_places, handle_count, limb_ends, matched_ends
+from tvmedit.cuts.landmarks import counterparts, end_places, matched_ends
+from tvmedit.cuts.limbs import handle_count, limb_ends
 from tvmedit.cuts.registration import REFUSED_EDGES
 
 Mesh = tuple[np.ndarray, np.ndarray]

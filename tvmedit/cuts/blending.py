@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
-from tvmedit.cuts.landmarks import FREE_ENDS, handle_count, limb_count
-from tvmedit.cuts.registration import Registration, register
-from tvmedit.cuts.seams import surface_step
+from tvmedit.cuts.limbs import FREE_ENDS
+from tvmedit.cuts.registration import Registration, evenly, register
+from tvmedit.cuts.surface import Surface
 from tvmedit.features.frames import check_faces, check_vertices, upright
 from tvmedit.graph.motion_graph import MotionGraph
 from tvmedit.graph.performance import Cut, Performance
@@ -138,8 +138,8 @@ def blend_cut(
         done += 1
         source, target = pairs.ends(k, *way)
         registration = register(
-            (source.vertices, source.faces),
-            (target.vertices, target.faces),
+            pairs.surface(source),
+            pairs.surface(target),
             height=pairs.height,
             edge=pairs.edge,
             iterations=iterations if start is None else max(4, iterations // 3),
@@ -217,6 +217,7 @@ class _Pairs:
         self._known: dict[tuple[bool, int], Shape] = {}
         self._known_ties: dict[tuple[bool, int], int] = {}
         self._free: dict[tuple[bool, int], tuple[Shape, int]] = {}
+        self._surfaces: dict[int, tuple[Shape, Surface]] = {}
 
     def ends(self, k: int, backwards: bool, freed: bool) -> tuple[Shape, Shape]:
         """The mesh to deform and the one to reach: of the clip that is left, going on, and of the one entered.
@@ -249,9 +250,8 @@ class _Pairs:
     def _tied(self, before: bool, k: int) -> int:
         """How many limbs do not hang free: none, or those that are one surface with the body or with each other."""
         if (before, k) not in self._known_ties:
-            shape = self._shape(before, k)
-            lost = FREE_ENDS - limb_count(shape.vertices, shape.faces)
-            self._known_ties[before, k] = max(lost, handle_count(shape.faces))
+            surface = self.surface(self._shape(before, k))
+            self._known_ties[before, k] = max(FREE_ENDS - surface.limbs, surface.handles)
         return self._known_ties[before, k]
 
     def _find_free(self, before: bool, k: int) -> tuple[Shape, int]:
@@ -264,8 +264,8 @@ class _Pairs:
         freer = [shift for shift in shifts if self._tied(before, k + shift) < self._tied(before, k)]
         for shift in sorted(freer, key=lambda shift: (self._tied(before, k + shift), abs(shift), shift)):
             other = self._shape(before, k + shift)
-            goal = (own.vertices, own.faces)
-            bent = register((other.vertices, other.faces), goal, height=self.height, edge=self.edge, iterations=14)
+            goal = self.surface(own)
+            bent = register(self.surface(other), goal, height=self.height, edge=self.edge, iterations=14)
             if not bent.reason:
                 return attrs.evolve(other, vertices=bent.between(1.0)), shift
         return own, 0
@@ -277,6 +277,13 @@ class _Pairs:
     def later(self, k: int) -> Shape:
         """The clip that is entered; its sequence may begin at the cut."""
         return self._shape(False, k)
+
+    def surface(self, shape: Shape) -> Surface:
+        """A shape's mesh, with all that has been found out about it."""
+        if id(shape) not in self._surfaces:
+            # The shape is kept beside it: its number stays its own.
+            self._surfaces[id(shape)] = shape, Surface(shape.vertices, shape.faces)
+        return self._surfaces[id(shape)][1]
 
     def _shape(self, before: bool, k: int) -> Shape:
         if (before, k) not in self._known:
@@ -332,17 +339,15 @@ def _in_between(pairs: _Pairs, found: dict[int, Registration], cut: Cut, way: tu
         source, target = pairs.ends(k, *way)
         share = 1.0 - share if way[0] else share
         vertices = found[k].between(share)
-        colours = _mixed(found[k].between(1.0), source, target, share)
+        colours = _mixed(pairs, found[k], source, target, share)
         shapes[cut.position + k] = Shape(vertices, source.faces, colours)
     return shapes
 
 
-def _mixed(reached: Array, source: Shape, target: Shape, share: float) -> Colours | None:
+def _mixed(pairs: _Pairs, found: Registration, source: Shape, target: Shape, share: float) -> Colours | None:
     if source.colours is None or target.colours is None:
         return source.colours
-    from scipy.spatial import cKDTree
-
-    nearest = cKDTree(target.vertices).query(reached)[1]
+    nearest = pairs.surface(target).tree.query(found.between(1.0))[1]
     mixed = (1 - share) * source.colours.astype(float) + share * target.colours[nearest].astype(float)
     return np.asarray(np.round(mixed), np.uint8)
 
@@ -350,10 +355,13 @@ def _mixed(reached: Array, source: Shape, target: Shape, share: float) -> Colour
 def _steps(pairs: _Pairs, shapes: dict[int, Shape], cut: Cut, first: int, last: int) -> float:
     """Largest surface step from frame to frame through the window and one frame to either side."""
 
-    def at(k: int) -> Array:
+    def at(k: int) -> Surface:
         position = cut.position + k
-        if position in shapes:
-            return shapes[position].vertices
-        return (pairs.earlier(k) if k < 0 else pairs.later(k)).vertices
+        return pairs.surface(shapes[position] if position in shapes else pairs.earlier(k) if k < 0 else pairs.later(k))
 
-    return max(surface_step(at(k), at(k + 1)) for k in range(min(first, -1), max(last, 0)))
+    def step(one: Surface, other: Surface) -> float:
+        # The mean of evenly spread vertices: all of them would tell the same, and take longer than the registration.
+        return float(np.mean(other.tree.query(one.vertices[evenly(len(one.vertices))])[0]))
+
+    neighbours = [(at(k), at(k + 1)) for k in range(min(first, -1), max(last, 0))]
+    return max(0.5 * (step(one, other) + step(other, one)) for one, other in neighbours)

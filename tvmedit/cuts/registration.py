@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from tvmedit.cuts.assembly import deform, normal_equations, turn_normals
 from tvmedit.cuts.interpolation import partly
 from tvmedit.cuts.landmarks import Counterparts, counterparts, end_places
-from tvmedit.cuts.nodes import DeformationGraph, spread_nodes, vertex_normals
+from tvmedit.cuts.nodes import DeformationGraph
 from tvmedit.cuts.rotations import rotation_matrices
+from tvmedit.cuts.surface import Mesh, Surface, mesh_volume
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int32]
@@ -97,15 +98,9 @@ def _lowest(vertices: Array) -> float:
     return float(np.partition(vertices[:, 2], count - 1)[:count].mean())
 
 
-def mesh_volume(vertices: Array, faces: Faces) -> float:
-    """Volume enclosed, for closed meshes with outward normals."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)
-
-
 def register(
-    source: tuple[Array, Faces],
-    target: tuple[Array, Faces],
+    source: Mesh,
+    target: Mesh,
     *,
     height: float,
     edge: float,
@@ -119,8 +114,8 @@ def register(
 
     Parameters
     ----------
-    source, target : (vertices, faces)
-        Already aligned, z up.
+    source, target : Surface, or (vertices, faces)
+        Already aligned, z up; what is found out about a Surface is kept for the next registration.
     height : float
         Body height in the meshes' unit.
     edge : float
@@ -134,7 +129,8 @@ def register(
     Registration
         With its verdict; never raises for a bad fit.
     """
-    metre = body_scale(*source, height)
+    source, target = Surface.of(source), Surface.of(target)
+    metre = body_scale(source.vertices, source.faces, height)
     found = _judged(_fitted(source, target, metre, iterations, start, TIGHT), target, edge)
     if not found.reason and found.residual <= SURE_EDGES * edge:
         return found
@@ -155,7 +151,7 @@ def register(
 
 
 def _found_by_limbs(
-    source: tuple[Array, Faces], target: tuple[Array, Faces], metre: float, iterations: int, edge: float
+    source: Surface, target: Surface, metre: float, iterations: int, edge: float
 ) -> Registration | None:
     """Registration that begins where the limbs are by their distances along the surface, if it leads there and back."""
     there = counterparts(source, target)
@@ -179,7 +175,7 @@ def _found_by_limbs(
     return found if apart <= TWISTED_EDGES * edge else None
 
 
-def _ends_met(found: Registration, source: tuple[Array, Faces], target: tuple[Array, Faces], metre: float) -> bool:
+def _ends_met(found: Registration, source: Surface, target: Surface, metre: float) -> bool:
     """Whether the ends of all limbs that are told lie on their own: along bent limbs places are told less exactly."""
     ends = end_places(source, target)
     if ends is None:
@@ -189,18 +185,17 @@ def _ends_met(found: Registration, source: tuple[Array, Faces], target: tuple[Ar
 
 
 def _fitted(
-    source: tuple[Array, Faces],
-    target: tuple[Array, Faces],
+    source: Surface,
+    target: Surface,
     metre: float,
     iterations: int,
     start: Registration | None,
     gates: tuple[float, float],
     known: Counterparts | None = None,
 ) -> Registration:
-    vertices, faces = source
-    graph = spread_nodes(vertices, faces, SPACING * metre)
+    graph = source.nodes(SPACING * metre)
     rotations, moves = _first_guess(graph, start)
-    fit = _Fit(vertices, vertex_normals(vertices, faces), target[0], vertex_normals(*target), graph, metre)
+    fit = _Fit(source, target, graph, metre)
     if known is not None:
         for stiffness in GUIDED:
             rotations, moves = fit.towards(rotations, moves, known, stiffness)
@@ -209,7 +204,7 @@ def _fitted(
     ):
         pull = PULL * max(0.0, 1.0 - number / (PULLED * iterations)) if known is not None else 0.0
         rotations, moves = fit.step(rotations, moves, stiffness, gate * metre, known if pull > 0.0 else None, pull)
-    return Registration(vertices, faces, graph, rotations, moves)
+    return Registration(source.vertices, source.faces, graph, rotations, moves)
 
 
 def _astray(there: Registration, back: Registration) -> float:
@@ -252,25 +247,15 @@ def _first_guess(graph: DeformationGraph, start: Registration | None) -> tuple[A
 class _Fit:
     """Samples of both meshes and the steps between them."""
 
-    def __init__(
-        self,
-        vertices: Array,
-        normals: Array,
-        target: Array,
-        target_normals: Array,
-        graph: DeformationGraph,
-        metre: float,
-    ) -> None:
-        from scipy.spatial import cKDTree
-
-        self.graph, self.metre, self.vertices = graph, metre, vertices
-        pick = _even(len(vertices))
-        self.points, self.normals = vertices[pick], normals[pick]
+    def __init__(self, source: Surface, target: Surface, graph: DeformationGraph, metre: float) -> None:
+        self.graph, self.metre, self.vertices = graph, metre, source.vertices
+        pick = evenly(len(source.vertices))
+        self.points, self.normals = source.vertices[pick], source.normals[pick]
         self.bound, self.weights = graph.bound[pick], graph.weights[pick]
-        pick = _even(len(target))
-        self.goals, self.goal_normals = target[pick], target_normals[pick]
-        self.target, self.target_normals = target, target_normals
-        self.tree = cKDTree(target)
+        pick = evenly(len(target.vertices))
+        self.goals, self.goal_normals = target.vertices[pick], target.normals[pick]
+        self.target, self.target_normals = target.vertices, target.normals
+        self.tree = target.tree
 
     def step(
         self,
@@ -287,9 +272,12 @@ class _Fit:
         graph = self.graph
         now = deform(self.points, graph.places, self.bound, self.weights, rotations, moves)
         facing = turn_normals(self.normals, self.bound, self.weights, rotations)
-        far, partner = self.tree.query(now)
+        # Beyond the gate nothing counts: what is found there, if anything, has no weight.
+        far, partner = self.tree.query(now, distance_upper_bound=gate)
+        partner = np.minimum(partner, len(self.target) - 1)
         there = _trust(np.asarray(far), facing, self.target_normals[partner], gate)
-        far, mine = cKDTree(now).query(self.goals)
+        far, mine = cKDTree(now, compact_nodes=False, balanced_tree=False).query(self.goals, distance_upper_bound=gate)
+        mine = np.minimum(mine, len(now) - 1)
         back = _trust(np.asarray(far), facing[mine], self.goal_normals, gate)
         pairs = [
             (self.points, self.bound, self.weights, now - self.target[partner], self.target_normals[partner], there),
@@ -327,25 +315,25 @@ class _Fit:
         return turned, moves + change[:, 3:]
 
 
-def _even(count: int) -> NDArray[np.int64]:
-    """Evenly spread numbers below a count."""
+def evenly(count: int) -> NDArray[np.int64]:
+    """Evenly spread numbers below a count, at most ``SAMPLES``."""
     return np.unique(np.linspace(0, count - 1, min(SAMPLES, count)).astype(np.int64))
 
 
 def _trust(far: Array, facing: Array, other: Array, gate: float) -> Array:
     """Cauchy-like weights of pairs within the gate whose normals agree."""
     agree = (facing * other).sum(axis=1) > FACING
-    return np.where(agree & (far < gate), 1.0 / (1.0 + (far / gate) ** 2), 0.0)
+    return np.where(agree & (far < gate), 1.0 / (1.0 + (np.minimum(far, gate) / gate) ** 2), 0.0)
 
 
-def _judged(found: Registration, target: tuple[Array, Faces], edge: float) -> Registration:
+def _judged(found: Registration, target: Surface, edge: float) -> Registration:
     """Refuse what would break the body: part of the target has no partner, or the half-way shape swells or thins."""
     from scipy.spatial import cKDTree
 
     reached = found.between(1.0)
-    far = cKDTree(reached).query(target[0])[0]
+    far = cKDTree(reached).query(target.vertices)[0]
     residual = float(np.quantile(far, 0.99))
-    ends = 0.5 * (mesh_volume(found.vertices, found.faces) + mesh_volume(*target))
+    ends = 0.5 * (mesh_volume(found.vertices, found.faces) + target.volume)
     volume = mesh_volume(found.between(0.5), found.faces) / ends if ends > 0 else float("nan")
     reason = ""
     if not residual <= REFUSED_EDGES * edge:
