@@ -258,6 +258,8 @@ class Session:
     def _end(self) -> None:
         self.runner.close()
         self.media.close()
+        # At once, not when Python next looks for garbage: in the window it never looks at what was there at the start.
+        self.cache.empty()
         self._lock.let_go()
 
     def _tell(self, before: Document) -> None:

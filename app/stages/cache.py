@@ -65,6 +65,12 @@ class ResultCache:
         self._hold(stage.key, value)
         self.turns += 1
 
+    def empty(self) -> None:
+        """Give up what is held in memory; what is on the disk stays."""
+        with self._lock:
+            self._held.clear()
+            self._bytes = 0
+
     def _hold(self, key: str, value: Any) -> None:
         size = size_of(value)
         with self._lock:

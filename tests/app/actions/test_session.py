@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import errno
+import gc
 import shutil
+import weakref
 from contextlib import closing
 from pathlib import Path
 
@@ -155,6 +157,20 @@ def test_a_correction_leaves_the_other_spans(tmp_path: Path) -> None:
     assert len(before) == 3
     assert len(before & after) == 2
     assert len(after - before) == 2
+
+
+def test_a_closed_session_gives_up_its_results(solved_project: Path, tmp_path: Path) -> None:
+    """At once: the window looks for no garbage among what was there when it opened."""
+    session = Session.open(shutil.copytree(solved_project, tmp_path / "film"))
+    character = session.document.characters[0].id
+    held = weakref.ref(session.result(session.stages.animation(character)))
+    assert held() is not None
+    gc.disable()
+    try:
+        session.close()
+        assert held() is None
+    finally:
+        gc.enable()
 
 
 def test_names_and_colours_cost_no_solving(tmp_path: Path) -> None:
