@@ -65,7 +65,7 @@ def load_slow_libraries(viewport: Choice = "auto") -> threading.Thread:
             for name in names:
                 with contextlib.suppress(ImportError):
                     importlib.import_module(name)
-            gc.freeze()  # a search through all of them would hold up the window for a fifth of a second, again and again
+            gc.freeze()  # each search through all of them would hold up the window for a fifth of a second
             time.sleep(pause)
 
     thread = threading.Thread(target=load, name="libraries", daemon=True)
