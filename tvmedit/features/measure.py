@@ -51,6 +51,18 @@ def vertex_areas(vertices: Array, faces: Faces) -> tuple[Array, float]:
 
 
 @compiled
+def extent(vertices: Array) -> tuple[Array, Array]:
+    """Least and largest coordinates (3,) each of vertices (v, 3), at least one."""
+    ax, ay, az = vertices[0, 0], vertices[0, 1], vertices[0, 2]
+    bx, by, bz = ax, ay, az
+    for i in range(1, len(vertices)):
+        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+        ax, ay, az = min(ax, x), min(ay, y), min(az, z)
+        bx, by, bz = max(bx, x), max(by, y), max(bz, z)
+    return np.array([ax, ay, az]), np.array([bx, by, bz])
+
+
+@compiled
 def ground_centroid(vertices: Array, weights: Array) -> tuple[float, float, float]:
     """Weighted mean of x and of y, and the sum of the weights; (0, 0, 0) where that is not positive.
 
@@ -83,15 +95,18 @@ def foot_cue(vertices: Array, areas: Array, lowest: float, height: float) -> Arr
     ankles, soles_of = np.empty(n, np.int64), np.empty(n, np.int64)
     ankle_count, sole_count = 0, 0
     low_x, low_y, high_x, high_y, total = 0.0, 0.0, 0.0, 0.0, 0.0
+    sole, from_, to = lowest + 0.035 * height, lowest + 0.06 * height, lowest + 0.14 * height
     for i in range(n):
-        z = (vertices[i, 2] - lowest) / height
-        if 0.06 <= z < 0.14:
+        z = vertices[i, 2]
+        if z >= to:
+            continue
+        if z >= from_:
             low_x += areas[i] * vertices[i, 0]
             low_y += areas[i] * vertices[i, 1]
             total += areas[i]
             ankles[ankle_count] = i
             ankle_count += 1
-        elif z < 0.035:
+        elif z < sole:
             soles_of[sole_count] = i
             sole_count += 1
     cue = np.zeros(2)
@@ -167,8 +182,18 @@ def samples_by_area(vertices: Array, faces: Faces, running: Array, count: int) -
         # A golden-ratio sequence places the point inside its part and inside its triangle without a random generator.
         first, second, third = (s * 0.6180339887) % 1.0, (s * 0.7548776662) % 1.0, (s * 0.5698402910) % 1.0
         target = total * (s + first) / count
-        while face < len(faces) - 1 and running[face] < target:
-            face += 1
+        # The first triangle up to which there is so much: steps that double, then halves.
+        step = 1
+        while face + step < len(faces) and running[face + step - 1] < target:
+            face += step
+            step *= 2
+        end = min(face + step, len(faces) - 1)
+        while face < end:
+            half = (face + end) // 2
+            if running[half] < target:
+                face = half + 1
+            else:
+                end = half
         root = np.sqrt(second)
         p, q, r = 1.0 - root, root * (1.0 - third), root * third
         for k in range(3):

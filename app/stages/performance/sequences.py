@@ -122,17 +122,16 @@ class _Counter:
         self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
 
     def __iter__(self) -> Any:
+        from tvmedit.features.measure import extent
+
         for mesh in self.footage:
             self.vertices.append(len(mesh.vertices))
             self.faces.append(len(mesh.faces))
             self.coloured += mesh.colours is not None
             self.textured += mesh.texture is not None
-            # Sixteen vertices a row: several times quicker than along the short axis.
-            even = len(mesh.vertices) // 16 * 16
-            for rows in (mesh.vertices[:even].reshape(-1, 48), mesh.vertices[even:]):
-                if len(rows):
-                    self.low = np.minimum(self.low, rows.min(axis=0).reshape(-1, 3).min(axis=0))
-                    self.high = np.maximum(self.high, rows.max(axis=0).reshape(-1, 3).max(axis=0))
+            if len(mesh.vertices):
+                low, high = extent(mesh.vertices)
+                self.low, self.high = np.minimum(self.low, low), np.maximum(self.high, high)
             yield mesh.vertices, mesh.faces
 
     def statistics(self, fps: float, height: float) -> Statistics:
