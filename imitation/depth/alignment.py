@@ -88,15 +88,18 @@ def _found(
     weak = np.eye(slopes.shape[1])
     weak[-1, -1] = 0
     # What a point adds to the matrix, and, times what it leaves, to the side. No BLAS: its threads cost more than this.
-    pairs = np.concatenate([(slopes[:, :, None] * slopes[:, None, :]).reshape(len(rows), -1), slopes], axis=1)
+    upper = np.triu_indices(slopes.shape[1])
+    pairs = np.concatenate([slopes[:, upper[0]] * slopes[:, upper[1]], slopes], axis=1)
+    half = len(upper[0])
     for turn in range(ROUNDS + 2):
-        sums, cost, seen = np.zeros((count, 56), np.float32), np.zeros(count), np.zeros(count, np.int64)
+        sums, cost, seen = np.zeros((count, pairs.shape[1]), np.float32), np.zeros(count), np.zeros(count, np.int64)
         _compare(
             1 if turn else 4, rows, columns, inverse, basis, pairs, own, shift.astype(np.float32), maps.A, maps.b,
             lenders.stack, lenders.hidden, lenders.scale, lenders.front, np.float32(lenders.margin),
-            bias.astype(np.float32), spread.astype(np.float32), sums, cost, seen,
+            bias.astype(np.float32), spread.astype(np.float32), half, sums, cost, seen,
         )  # fmt: skip
-        matrix, side = sums[:, :49].reshape(count, 7, 7).astype(np.float64), sums[:, 49:].astype(np.float64)
+        matrix, side = np.empty((count, 7, 7)), sums[:, half:].astype(np.float64)
+        matrix[:, upper[0], upper[1]] = matrix[:, upper[1], upper[0]] = sums[:, :half]
         spread = np.maximum(cost, 1.0)
         if turn == 0:
             # Only how bright they are, at first: that is to explain nothing that counts for a shift.
@@ -118,10 +121,13 @@ def _found(
 @njit(cache=True, nogil=True, error_model="numpy")
 def _compare(
     step: int, rows: Any, columns: Any, inverse: Any, basis: Any, pairs: Any, own: Any, shift: Any, A: Any, b: Any,
-    stack: Any, hidden: Any, scale: Any, front: Any, margin: Any, bias: Any, spread: Any, sums: Any, cost: Any,
-    seen: Any,
+    stack: Any, hidden: Any, scale: Any, front: Any, margin: Any, bias: Any, spread: Any, half: int, sums: Any,
+    cost: Any, seen: Any,
 ) -> None:  # fmt: skip
-    """Normal equations (n, 49 + 7) of each frame's shift, mean difference (n,), how many points it sees (n,)."""
+    """Normal equations of each frame's shift, mean difference (n,), how many points it sees (n,).
+
+    The equations (n, ``half`` + 7): the upper half of a symmetric matrix row by row, then the side.
+    """
     height, width = stack.shape[1], stack.shape[2]
     for n in range(stack.shape[0]):
         for k in range(0, len(rows), step):
@@ -135,15 +141,14 @@ def _compare(
             if nearer_before(front[n], u, v, width, height, inverse[k] / z, margin):
                 continue
             iu, iv = int(u), int(v)
-            value = np.float32(0)
-            for c in range(3):
-                value += straight(stack[n], iu, iv, u - iu, v - iv, c) * scale[n, c]
+            red, green, blue = straight(stack[n], iu, iv, u - iu, v - iv)
+            value = red * scale[n, 0] + green * scale[n, 1] + blue * scale[n, 2]
             rest = own[k] - value - bias[n]
             seen[n] += 1
             cost[n] += min(abs(rest), np.float32(BURNT))
             weight = spread[n] / max(spread[n], abs(rest))
-            for i in range(49):
+            for i in range(half):
                 sums[n, i] += weight * pairs[k, i]
-            for i in range(49, 56):
+            for i in range(half, half + 7):
                 sums[n, i] += weight * rest * pairs[k, i]
         cost[n] /= max(seen[n], 1)

@@ -165,14 +165,6 @@ def shown(hidden: Any, u: Any, v: Any) -> bool:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def straight(picture: Any, x: int, y: int, q: Any, r: Any, channel: int) -> Any:
-    """A picture between its pixels, along straight lines."""
-    top = (1 - q) * picture[y, x, channel] + q * picture[y, x + 1, channel]
-    low = (1 - q) * picture[y + 1, x, channel] + q * picture[y + 1, x + 1, channel]
-    return (1 - r) * top + r * low
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def nearer_before(front: Any, u: Any, v: Any, width: int, height: int, w: Any, margin: Any) -> bool:
     """Whether a frame sees something nearer at a pixel (or right beside it: depth ends a little astray)."""
     high, wide = front.shape
@@ -195,17 +187,31 @@ def _weights(q: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _bent(picture: Any, x: int, y: int, q: Any, r: Any, channel: int) -> Any:
-    """A picture between its pixels by 4 x 4 of them: sharper than a straight line, by which fills went soft."""
+def straight(picture: Any, x: int, y: int, q: Any, r: Any) -> Any:
+    """A picture's three channels between its pixels, along straight lines."""
+    p, s = 1 - q, 1 - r
+    return (
+        s * (p * picture[y, x, 0] + q * picture[y, x + 1, 0])
+        + r * (p * picture[y + 1, x, 0] + q * picture[y + 1, x + 1, 0]),
+        s * (p * picture[y, x, 1] + q * picture[y, x + 1, 1])
+        + r * (p * picture[y + 1, x, 1] + q * picture[y + 1, x + 1, 1]),
+        s * (p * picture[y, x, 2] + q * picture[y, x + 1, 2])
+        + r * (p * picture[y + 1, x, 2] + q * picture[y + 1, x + 1, 2]),
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _bent(picture: Any, x: int, y: int, q: Any, r: Any) -> Any:
+    """Its channels between its pixels by 4 x 4 of them: sharper than a straight line, by which fills went soft."""
     a, b, c, d = _weights(q)
     down = _weights(r)
-    total = 0.0
+    red, green, blue = 0.0, 0.0, 0.0
     for j in range(4):
-        total += down[j] * (
-            a * picture[y + j - 1, x - 1, channel] + b * picture[y + j - 1, x, channel]
-            + c * picture[y + j - 1, x + 1, channel] + d * picture[y + j - 1, x + 2, channel]
-        )  # fmt: skip
-    return min(max(total, 0.0), 255.0)
+        row = picture[y + j - 1]
+        red += down[j] * (a * row[x - 1, 0] + b * row[x, 0] + c * row[x + 1, 0] + d * row[x + 2, 0])
+        green += down[j] * (a * row[x - 1, 1] + b * row[x, 1] + c * row[x + 1, 1] + d * row[x + 2, 1])
+        blue += down[j] * (a * row[x - 1, 2] + b * row[x, 2] + c * row[x + 1, 2] + d * row[x + 2, 2])
+    return min(max(red, 0.0), 255.0), min(max(green, 0.0), 255.0), min(max(blue, 0.0), 255.0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -228,9 +234,8 @@ def _samples(
             continue
         q, r = u - iu, v - iv
         inner = iu > 0 and iv > 0 and iu < width - 2 and iv < height - 2
-        for c in range(3):
-            value = _bent(stack[n], iu, iv, q, r, c) if fine and inner else straight(stack[n], iu, iv, q, r, c)
-            out[count, c] = value * scale[n, c]
+        red, green, blue = _bent(stack[n], iu, iv, q, r) if fine and inner else straight(stack[n], iu, iv, q, r)
+        out[count, 0], out[count, 1], out[count, 2] = red * scale[n, 0], green * scale[n, 1], blue * scale[n, 2]
         count += 1
         if count == most:
             break
@@ -303,6 +308,12 @@ def _choose(
             if earlier:
                 continue
             middle = total / number if number > 0 else w
+            against = _seen_through(columns[k], rows[k], middle, key_A, key_b, known, tolerance)
+            worth = np.float32(SUPPORT) * min(support, np.float32(4))
+            burden = np.float32(AGAINST) * min(against, np.float32(4))
+            if burden - worth >= best:
+                # However well colours agree, it cannot win.
+                continue
             count = _samples(
                 columns[k], rows[k], middle, A, b, stack, hidden, scale, known, np.float32(0), False, False, 8, values
             )  # fmt: skip
@@ -315,9 +326,8 @@ def _choose(
                         cost += min(abs(values[s, c] - m), np.float32(UNSEEN))
                 cost /= 3 * count
                 cost *= np.float32(1) + np.float32(1) / count
-            cost -= np.float32(SUPPORT) * min(support, np.float32(4))
-            against = _seen_through(columns[k], rows[k], middle, key_A, key_b, known, tolerance)
-            cost += np.float32(AGAINST) * min(against, np.float32(4))
+            cost -= worth
+            cost += burden
             if cost < best:
                 best = cost
                 result[k] = middle
