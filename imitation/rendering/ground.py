@@ -82,6 +82,8 @@ def footing_at(
 
 _STEP = 2
 """Pixels from one computed sample of a shadow to the next."""
+_FADED = 1.6
+"""Reaches from a foot's point at which its shadow has faded out."""
 
 Ground = Plane | Footing | NDArray[np.floating]
 """Flat ground, ground near the feet, or the background's depth (h, w), camera z, NaN where unknown."""
@@ -108,17 +110,22 @@ def ground_shadow(
     """
     if not isinstance(ground, Footing):
         box = _box(_reached(vertices, lights[0], ground), 0.15 * lights[0].radius, camera, size)
-        return _patch(vertices, lights, camera, size, ground, look, box)
+        shades = np.zeros((size[1], size[0]), np.float32)
+        if box is not None:
+            shades[box[1] : box[3], box[0] : box[2]] = _patch(vertices, lights, camera, ground, look, box)
+        return shades
     open_share = np.ones((size[1], size[0]), np.float32)
     reach = ground.reach or 0.33 * lights[0].radius
     for point in ground.points:
         plane = Plane(point, ground.normal)
-        box = _box(point[None], 1.6 * reach, camera, size)
-        shade = _patch(vertices, lights, camera, size, plane, look, box, reach)
+        box = _box(point[None], _FADED * reach, camera, size)
+        if box is None:
+            continue
+        shade = _patch(vertices, lights, camera, plane, look, box, reach)
         # Where the levels of two feet meet, the darker counts: each shades its own step.
-        open_share = np.minimum(open_share, 1 - shade)
-    shades: NDArray[np.float32] = 1 - open_share
-    return shades
+        part = open_share[box[1] : box[3], box[0] : box[2]]
+        np.minimum(part, 1 - shade, out=part)
+    return np.subtract(1, open_share, out=open_share)
 
 
 Box = tuple[int, int, int, int]
@@ -128,18 +135,14 @@ def _patch(
     vertices: NDArray[np.float64],
     lights: Lights,
     camera: Camera,
-    size: tuple[int, int],
     ground: Plane | NDArray[np.floating],
     look: Look,
-    box: Box | None,
+    box: Box,
     reach: float | None = None,
 ) -> NDArray[np.float32]:
-    """The shadow inside a box of pixels; with ``reach`` it fades out round the plane's point."""
+    """The shadow (h, w) in a box of pixels; with ``reach`` it fades out round the plane's point."""
     import cv2
 
-    shade = np.zeros((size[1], size[0]), np.float32)
-    if box is None:
-        return shade
     left, top, right, bottom = box
     columns, rows = np.meshgrid(np.arange(left, right, _STEP), np.arange(top, bottom, _STEP))
     rays = camera.rays(np.stack([columns.reshape(-1), rows.reshape(-1)], axis=1))
@@ -149,11 +152,13 @@ def _patch(
         else:
             z = np.asarray(ground, np.float64)[top:bottom:_STEP, left:right:_STEP].reshape(-1)
         there = np.isfinite(z) & (z > 0)
-    points = camera.centre + z[there, None] * rays[there]
-    dark = _darkness(points, lights, look)
+    points, fading = camera.centre + z[there, None] * rays[there], 1.0
     if reach is not None and isinstance(ground, Plane):
         away = np.linalg.norm(points - ground.point, axis=1) / reach
-        dark = dark * np.clip(1.6 - away, 0, 1) ** 2
+        inner = away < _FADED
+        there[there], points = inner, points[inner]
+        fading = np.clip(_FADED - away[inner], 0, 1) ** 2
+    dark = _darkness(points, lights, look) * fading
     patch = np.zeros(rows.shape, np.float32)
     patch.reshape(-1)[there] = np.minimum(dark, 1.0)
     middle = float(camera.depth((vertices.min(axis=0) + vertices.max(axis=0)) / 2))
@@ -162,7 +167,7 @@ def _patch(
     # Sample (0, 0) of the coarse patch lies on the pixel (left, top).
     place = np.array([[1 / _STEP, 0, 0], [0, 1 / _STEP, 0]], np.float64)
     flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-    shade[top:bottom, left:right] = cv2.warpAffine(
+    shade: NDArray[np.float32] = cv2.warpAffine(
         patch, place, (right - left, bottom - top), flags=flags, borderMode=cv2.BORDER_REPLICATE
     )
     return shade
@@ -189,13 +194,23 @@ def _reached(vertices: NDArray[np.float64], key: LightMap, ground: Plane | NDArr
 
 def _box(points: NDArray[np.float64], margin: float, camera: Camera, size: tuple[int, int]) -> Box | None:
     """Pixels within ``margin`` world units of points."""
-    shifts = camera.R * margin
-    pixels = camera.project(np.concatenate([points + shift for shift in (*shifts, *-shifts)]))
-    pixels = pixels[np.isfinite(pixels).all(axis=1)]
-    if not len(pixels):
+    # Moved along the camera's own axes, both ways: to the sides, which needs no second look, and in depth.
+    local = points @ camera.R.T + camera.T
+    lowest, highest = [], []
+    for shift in (0.0, margin, -margin):
+        z = local[:, 2] + shift
+        before = z > 0
+        if not before.any():
+            continue
+        z = z[before, None]
+        pixels = local[before, :2] @ camera.K[:2, :2].T / z + camera.K[:2, 2]
+        aside = margin * np.abs(camera.K[:2, :2]).max(axis=1) / z if shift == 0 else 0.0
+        lowest.append((pixels - aside).min(axis=0))
+        highest.append((pixels + aside).max(axis=0))
+    if not lowest:
         return None
-    low = np.clip(np.floor(pixels.min(axis=0)), 0, size).astype(int)
-    high = np.clip(np.ceil(pixels.max(axis=0)) + 1, 0, size).astype(int)
+    low = np.clip(np.floor(np.min(lowest, axis=0)), 0, size).astype(int)
+    high = np.clip(np.ceil(np.max(highest, axis=0)) + 1, 0, size).astype(int)
     if (high <= low).any():
         return None
     return int(low[0]), int(low[1]), int(high[0]), int(high[1])

@@ -73,15 +73,17 @@ def label(picture: Picture, text: str) -> Picture:
 
 
 def _joined(pictures: Sequence[Picture], gap: int, axis: int) -> Picture:
-    across = max(picture.shape[1 - axis] for picture in pictures)
-    parts: list[Picture] = []
+    shape = [max(picture.shape[k] for picture in pictures) for k in range(3)]
+    shape[axis] = sum(picture.shape[axis] for picture in pictures) + gap * (len(pictures) - 1)
+    joined, at = np.empty(shape, np.uint8), [0, 0]
+    if len({picture.shape[1 - axis] for picture in pictures}) > 1:
+        joined[:] = _PAPER
     for number, picture in enumerate(pictures):
-        missing = across - picture.shape[1 - axis]
-        pad = [(0, 0), (0, 0), (0, 0)]
-        pad[1 - axis] = (0, missing)
-        pad[axis] = (0, gap if number < len(pictures) - 1 else 0)
-        padded = np.empty([picture.shape[k] + sum(pad[k]) for k in range(3)], np.uint8)
-        padded[:] = _PAPER
-        padded[: picture.shape[0], : picture.shape[1]] = picture
-        parts.append(padded)
-    return np.concatenate(parts, axis=axis)
+        if number:
+            strip = [slice(None), slice(None)]
+            strip[axis] = slice(at[axis], at[axis] + gap)
+            joined[tuple(strip)] = _PAPER
+            at[axis] += gap
+        joined[at[0] : at[0] + picture.shape[0], at[1] : at[1] + picture.shape[1]] = picture
+        at[axis] += picture.shape[axis]
+    return joined

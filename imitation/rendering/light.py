@@ -11,7 +11,7 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from imitation.geometry.projection import Camera
-from imitation.rendering.raster import rasterise
+from imitation.rendering.raster import depths
 
 _AWAY = 40.0
 """Distance of a light in radii of what it lights: far enough to count as parallel."""
@@ -98,8 +98,7 @@ def light_map(
     focal = _AWAY * size / 2 / 1.04
     K = np.array([[focal, 0, (size - 1) / 2], [0, focal, (size - 1) / 2], [0, 0, 1.0]])
     camera = look_at(centre + direction * _AWAY * radius, centre, np.roll(direction, 1), K)
-    nearest = rasterise(vertices, faces, camera, (size, size)).depth
-    farthest = rasterise(vertices, faces, camera, (size, size), farthest=True).depth
+    nearest, farthest = depths(vertices, faces, camera, (size, size))
     return LightMap(camera, nearest, farthest, _AWAY * radius / focal, radius)
 
 
@@ -148,13 +147,21 @@ def _blocked(
 ) -> Any:  # fmt: skip
     size = depths.shape[0]
     shares = np.zeros(local.shape[0])
+    # Where the map holds anything: most of the ground lies beside it.
+    left, top, right, bottom = size, size, -1, -1
+    for y in range(size):
+        for x in range(size):
+            if depths[y, x] < np.inf:
+                left, right, top, bottom = min(left, x), max(right, x), min(top, y), max(bottom, y)
     for n in range(local.shape[0]):
         z = local[n, 2]
         u, v = focal * local[n, 0] / z + middle, focal * local[n, 1] / z + middle
         radius = least
+        reach = least if spread == 0 else least + spread * 0.6 * size * z / focal
+        if u + reach < left - 1 or u - reach > right + 1 or v + reach < top - 1 or v - reach > bottom + 1:
+            continue
         if spread > 0:
             gap, found = 0.0, 0.0
-            reach = least + spread * 0.6 * size * z / focal
             for k in range(pattern.shape[0]):
                 x, y = round(u + reach * pattern[k, 0]), round(v + reach * pattern[k, 1])
                 if 0 <= x < size and 0 <= y < size and depths[y, x] < z - bias:
@@ -170,6 +177,7 @@ def _blocked(
         for k in range(pattern.shape[0]):
             x, y = round(u + radius * pattern[k, 0]), round(v + radius * pattern[k, 1])
             if 0 <= x < size and 0 <= y < size and depths[y, x] < z - bias:
-                total += np.exp(-max(z - lowest[y, x], 0.0) / fade)
+                # Most shadows do not fade at all.
+                total += np.exp(-max(z - lowest[y, x], 0.0) / fade) if fade < np.inf else 1.0
         shares[n] = total / pattern.shape[0]
     return shares

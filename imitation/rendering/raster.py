@@ -39,8 +39,6 @@ def rasterise(
     camera: Camera,
     size: tuple[int, int],
     samples: int = 1,
-    *,
-    farthest: bool = False,
 ) -> Seen:
     """Find the triangle that each sample of a picture sees.
 
@@ -51,25 +49,50 @@ def rasterise(
     camera : the picture's camera, pixel centres at integers.
     size : (width, height) in pixels.
     samples : samples along each side of a pixel; the result has samples * height rows.
-    farthest : keep the farthest surface instead of the nearest; then ``depth`` is -inf where nothing is seen.
     """
     width, height = size[0] * samples, size[1] * samples
     # Sample k of pixel u lies at u + (k + .5) / samples - .5.
     finer = np.array([[samples, 0, (samples - 1) / 2], [0, samples, (samples - 1) / 2], [0, 0, 1.0]])
     K = finer @ camera.K
-    local = np.ascontiguousarray(vertices @ camera.R.T + camera.T)
-    depth = np.full((height, width), -np.inf if farthest else np.inf, np.float32)
+    depth = np.full((height, width), np.inf, np.float32)
     face = np.full((height, width), -1, np.int32)
     weights = np.zeros((height, width, 2), np.float32)
-    near = 1e-3 * max(float(np.abs(local[:, 2]).max(initial=0.0)), 1e-9)
-    _fill(local, np.ascontiguousarray(faces, np.int32), K, np.linalg.inv(K), near, farthest, depth, face, weights)
+    local, near = _seen_from(vertices, camera)
+    corners = np.ascontiguousarray(faces, np.int32)
+    _fill(local, corners, K, np.linalg.inv(K), near, depth, depth[:0], face, weights)
     return Seen(depth, face, weights)
+
+
+def depths(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32], camera: Camera, size: tuple[int, int]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Depth (h, w) of the nearest and of the farthest surface at each pixel; inf and -inf where nothing is seen.
+
+    Parameters
+    ----------
+    vertices, faces, camera, size : see ``rasterise``.
+    """
+    nearest = np.full((size[1], size[0]), np.inf, np.float32)
+    farthest = np.full((size[1], size[0]), -np.inf, np.float32)
+    local, near = _seen_from(vertices, camera)
+    none, corners = np.empty((0, 0), np.int32), np.ascontiguousarray(faces, np.int32)
+    K = np.ascontiguousarray(camera.K)
+    _fill(local, corners, K, np.linalg.inv(K), near, nearest, farthest, none, np.empty((0, 0, 2), np.float32))
+    return nearest, farthest
+
+
+def _seen_from(vertices: NDArray[np.float64], camera: Camera) -> tuple[NDArray[np.float64], float]:
+    """Vertices (n, 3) as the camera has them, and from which depth on a surface counts."""
+    local = np.ascontiguousarray(vertices @ camera.R.T + camera.T)
+    return local, 1e-3 * max(float(np.abs(local[:, 2]).max(initial=0.0)), 1e-9)
 
 
 @njit(cache=True, nogil=True)
 def _fill(
-    local: Any, faces: Any, K: Any, inverse: Any, near: float, farthest: bool, depth: Any, face: Any, weights: Any
+    local: Any, faces: Any, K: Any, inverse: Any, near: float, depth: Any, farthest: Any, face: Any, weights: Any
 ) -> None:
+    """Nearest surfaces of all samples (h, w), and, each where its array is not empty, farthest ones, faces, weights."""
+    both, named = farthest.size > 0, face.size > 0
     height, width = depth.shape
     edge = np.empty((3, 3))
     normal = np.empty((3, 3))
@@ -120,8 +143,11 @@ def _fill(
                 z = 1.0 / whole
                 if z <= near:
                     continue
-                if (z > depth[y, x]) if farthest else (z < depth[y, x]):
+                if both and z > farthest[y, x]:
+                    farthest[y, x] = z
+                if z < depth[y, x]:
                     depth[y, x] = z
-                    face[y, x] = f
-                    weights[y, x, 0] = a * z
-                    weights[y, x, 1] = b * z
+                    if named:
+                        face[y, x] = f
+                        weights[y, x, 0] = a * z
+                        weights[y, x, 1] = b * z

@@ -131,46 +131,53 @@ def grid(
     picture: Picture, camera: Camera, plane: Plane, *, step: float, reach: float, centre: NDArray[np.float64]
 ) -> Picture:
     """Draw a square grid of lines on a plane, ``step`` world units apart, fading out ``reach`` from ``centre``."""
-    height, width = picture.shape[:2]
     first = np.cross(plane.normal, [0.0, 1.0, 0.0] if abs(plane.normal[0]) > 0.6 else [1.0, 0.0, 0.0])
     first = first / np.linalg.norm(first)
     axes = np.stack([first, np.cross(plane.normal, first)])
-    strength = np.zeros((height, width), np.float32)
     offset = float((plane.point - camera.centre) @ plane.normal)
     below = centre - plane.normal * ((centre - plane.point) @ plane.normal)
     # Everything a pixel's ray needs is linear in the pixel: across = rays @ axis and steepness = rays @ normal.
     toward = camera.R.T @ np.linalg.inv(camera.K)
     parts = np.stack([axes[0] @ toward, axes[1] @ toward, plane.normal @ toward])
     starts = np.array([axes[0] @ camera.centre, axes[1] @ camera.centre])
-    _lines(parts, starts, axes @ below, offset, step, reach, strength)
     drawn: Picture = picture.copy()
-    there = strength > 0
-    under = picture[there]
-    drawn[there] = np.rint(under + 0.8 * strength[there][:, None] * (_FLOOR - under)).astype(np.uint8)
+    _lines(parts, starts, axes @ below, offset, step, reach, _FLOOR, drawn)
     return drawn
 
 
 @njit(cache=True, nogil=True)
-def _lines(parts: Any, starts: Any, middle: Any, offset: float, step: float, reach: float, strength: Any) -> None:
-    height, width = strength.shape
+def _lines(
+    parts: Any, starts: Any, middle: Any, offset: float, step: float, reach: float, colour: Any, picture: Any
+) -> None:
+    """Lines of a colour over a picture (h, w, 3), written to it."""
+    height, width = picture.shape[:2]
     for y in range(height):
         for x in range(width):
             steep = parts[2, 0] * x + parts[2, 1] * y + parts[2, 2]
             if steep == 0.0 or offset / steep <= 0.0:
                 continue
             z = offset / steep
-            away, best = 0.0, 0.0
+            along = (
+                (starts[0] + z * (parts[0, 0] * x + parts[0, 1] * y + parts[0, 2])) / step,
+                (starts[1] + z * (parts[1, 0] * x + parts[1, 1] * y + parts[1, 2])) / step,
+            )
+            away = (along[0] * step - middle[0]) ** 2 + (along[1] * step - middle[1]) ** 2
+            if away >= reach * reach:
+                continue
+            best = 0.0
             for k in range(2):
                 ray = parts[k, 0] * x + parts[k, 1] * y + parts[k, 2]
-                along = (starts[k] + z * ray) / step
                 # The width of a pixel on the ground, so that far lines thin out instead of flickering.
                 dx = z * (parts[k, 0] - ray * parts[2, 0] / steep) / step
                 dy = z * (parts[k, 1] - ray * parts[2, 1] / steep) / step
                 pixel = np.sqrt(dx * dx + dy * dy) + 1e-12
-                line = min(max(1.1 - abs(along - np.rint(along)) / pixel, 0.0), 1.0)
+                line = min(max(1.1 - abs(along[k] - np.rint(along[k])) / pixel, 0.0), 1.0)
                 best = max(best, line * min(max(0.6 / pixel - 1.0, 0.0), 1.0))
-                away += (along * step - middle[k]) ** 2
-            strength[y, x] = best * max(1.0 - np.sqrt(away) / reach, 0.0)
+            strength = np.float32(0.8) * np.float32(best * max(1.0 - np.sqrt(away) / reach, 0.0))
+            if strength > 0:
+                for c in range(3):
+                    under = np.float32(picture[y, x, c])
+                    picture[y, x, c] = np.uint8(np.rint(under + strength * (colour[c] - under)))
 
 
 def _nice(length: float) -> float:

@@ -177,6 +177,14 @@ def grain_of(picture: Picture) -> float:
 
 def add_grain(picture: Picture, alpha: NDArray[np.floating], sigma: float, seed: int) -> Picture:
     """Noise of ``sigma`` levels where ``alpha`` (h, w) says that something was laid over a film; seeded a frame."""
-    noise = np.random.default_rng(seed).standard_normal(picture.shape, dtype=np.float32)
-    done: Picture = np.clip(np.rint(picture + sigma * noise * alpha[..., None]), 0, 255).astype(np.uint8)
+    done: Picture = picture.copy()
+    rows = np.flatnonzero((alpha != 0).any(axis=1))
+    if not len(rows):
+        return done
+    # Noise comes row by row: what lies below the last that is covered is not asked for, and no other row changes.
+    last = int(rows[-1]) + 1
+    noise = np.random.default_rng(seed).standard_normal((last, *picture.shape[1:]), dtype=np.float32)
+    box = slice(int(rows[0]), last)
+    noisy = picture[box] + sigma * noise[box] * alpha[box, :, None]
+    done[box] = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
     return done
