@@ -31,6 +31,8 @@ WAYS = ((False, False), (True, False), (False, True), (True, True))
 """Whether to deform the mesh of the clip that is entered, and whether to free limbs first, in the order of trial."""
 REACH = 4
 """So many frames away a mesh with free limbs is looked for."""
+BENDING = 14
+"""Steps of the registration that bends it; a third where it was bent onto a neighbouring frame already."""
 FEWEST = 3
 """A blend of fewer good frames is refused."""
 
@@ -217,6 +219,7 @@ class _Pairs:
         self._known: dict[tuple[bool, int], Shape] = {}
         self._known_ties: dict[tuple[bool, int], int] = {}
         self._free: dict[tuple[bool, int], tuple[Shape, int]] = {}
+        self._bent: dict[tuple[bool, int], Registration] = {}
         self._surfaces: dict[int, tuple[Shape, Surface]] = {}
 
     def ends(self, k: int, backwards: bool, freed: bool) -> tuple[Shape, Shape]:
@@ -264,9 +267,18 @@ class _Pairs:
         freer = [shift for shift in shifts if self._tied(before, k + shift) < self._tied(before, k)]
         for shift in sorted(freer, key=lambda shift: (self._tied(before, k + shift), abs(shift), shift)):
             other = self._shape(before, k + shift)
-            goal = self.surface(own)
-            bent = register(self.surface(other), goal, height=self.height, edge=self.edge, iterations=14)
+            # What was bent onto the frame before has hardly any way left.
+            start = self._bent.get((before, k + shift))
+            bent = register(
+                self.surface(other),
+                self.surface(own),
+                height=self.height,
+                edge=self.edge,
+                iterations=BENDING if start is None else BENDING // 3,
+                start=start,
+            )
             if not bent.reason:
+                self._bent[before, k + shift] = bent
                 return attrs.evolve(other, vertices=bent.between(1.0)), shift
         return own, 0
 

@@ -147,27 +147,31 @@ def matched_ends(ours: Ends, theirs: Ends) -> tuple[list[int], list[int]] | None
     apart = ((few.middles[:, None, :-1] - many.middles[None, :, :-1]) ** 2).sum(axis=3) @ share
     sizes = np.log(few.sizes[:, None] / many.sizes[None]) ** 2
     other = SIZES * scale**2 * np.minimum(sizes, OTHER_SIZE).sum(axis=2)
-    costs = []
-    pairs = np.triu_indices(len(few.vertices), 1)
-    for order in itertools.permutations(range(len(many.vertices)), len(few.vertices)):
-        unlike = float(np.abs(between[0] - between[1][np.ix_(order, order)])[pairs].mean()) / scale
-        if unlike <= UNLIKE:
-            limbs = (apart + other)[np.arange(len(order)), order].sum() + (2.0 * scale * unlike) ** 2
-            trunk = _rigidly_apart(few.middles[:, -1], many.middles[list(order), -1])
-            costs.append((limbs + BEGINNINGS * trunk, order))
-    costs.sort()
-    if not costs or (len(costs) > 1 and costs[1][0] < costs[0][0] + CLEAR * scale**2):
+    orders = np.array(list(itertools.permutations(range(len(many.vertices)), len(few.vertices))))
+    first, second = np.triu_indices(len(few.vertices), 1)
+    wanted = between[0][first, second]
+    unlike = np.abs(wanted - between[1][orders[:, first], orders[:, second]]).mean(axis=1) / scale
+    orders, unlike = orders[unlike <= UNLIKE], unlike[unlike <= UNLIKE]
+    if not len(orders):
         return None
-    first, second = list(range(len(few.vertices))), list(costs[0][1])
-    return (second, first) if swapped else (first, second)
+    limbs = (apart + other)[np.arange(orders.shape[1]), orders].sum(axis=1) + (2.0 * scale * unlike) ** 2
+    costs = limbs + BEGINNINGS * _rigidly_apart(few.middles[:, -1], many.middles[orders, -1])
+    ranking = np.argsort(costs, kind="stable")
+    if len(ranking) > 1 and costs[ranking[1]] < costs[ranking[0]] + CLEAR * scale**2:
+        return None
+    matched = list(range(len(few.vertices))), orders[ranking[0]].tolist()
+    return matched[::-1] if swapped else matched
 
 
-def _rigidly_apart(first: Array, second: Array) -> float:
-    """Sum of squared distances after the best turn and shift; a mirrored body is far apart."""
-    a, b = first - first.mean(axis=0), second - second.mean(axis=0)
+def _rigidly_apart(first: Array, second: Array) -> Array:
+    """Sums of squared distances (n,) of points (p, 3) from others (n, p, 3) after the best turn and shift.
+
+    A mirrored body is far apart.
+    """
+    a, b = first - first.mean(axis=0), second - second.mean(axis=1, keepdims=True)
     left, values, right = np.linalg.svd(a.T @ b)
-    values[-1] *= np.sign(np.linalg.det(left @ right))
-    return float((a**2).sum() + (b**2).sum() - 2.0 * values.sum())
+    values[:, -1] *= np.sign(np.linalg.det(left @ right))
+    return np.asarray((a**2).sum() + (b**2).sum(axis=(1, 2)) - 2.0 * values.sum(axis=1))
 
 
 def _symmetric(distances: Array) -> Array:

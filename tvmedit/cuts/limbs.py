@@ -6,7 +6,7 @@ import attrs
 import numpy as np
 from numpy.typing import NDArray
 
-from tvmedit.cuts.nodes import adjacency, vertex_normals
+from tvmedit.cuts.nodes import Adjacency, adjacency, vertex_normals
 from tvmedit.features.measure import vertex_areas
 
 Array = NDArray[np.float64]
@@ -54,13 +54,16 @@ class Ends:
     sizes: Array
 
 
-def limb_ends(vertices: Array, faces: Faces, *, around_hollows: bool = True) -> Ends | None:
+def limb_ends(
+    vertices: Array, faces: Faces, *, around_hollows: bool = True, around: Adjacency | None = None
+) -> Ends | None:
     """Find the ends of a body's limbs, the furthest first; None where it hangs too little together or has none.
 
     Around hollows, where limbs that touch the body are one surface with it, or straight through them: truer for a body
-    whose limbs are free.
+    whose limbs are free. ``around`` is what ``adjacency`` gives, if it is there already.
     """
-    found = _found(vertices, faces, around_hollows=around_hollows, whole=True)
+    around = around or adjacency(vertices, faces)
+    found = _found(vertices, around, _detour(vertices, faces, around) if around_hollows else None, whole=True)
     if found is None:
         return None
     chosen, rows, out, reach = found
@@ -73,22 +76,22 @@ def limb_ends(vertices: Array, faces: Faces, *, around_hollows: bool = True) -> 
     return Ends(distances, np.array(chosen), reach, middles, sizes)
 
 
-def limb_count(vertices: Array, faces: Faces) -> int:
+def limb_count(vertices: Array, faces: Faces, around: Adjacency | None = None) -> int:
     """How many limbs of a body hang free; 0 where it has too few to tell."""
-    found = _found(vertices, faces, around_hollows=False, whole=False)
+    found = _found(vertices, around or adjacency(vertices, faces), None, whole=False)
     return 0 if found is None else min(len(found[0]), FREE_ENDS)
 
 
 def _found(
-    vertices: Array, faces: Faces, *, around_hollows: bool, whole: bool
+    vertices: Array, around: Adjacency, detour: Array | None, *, whole: bool
 ) -> tuple[list[int], list[Array], Array, float] | None:
     """Ends, the distances of all vertices from each (or only of near ones) and from the middle, and the furthest."""
     from scipy.sparse import csr_matrix
     from scipy.sparse.csgraph import dijkstra
 
-    offsets, neighbours, lengths = adjacency(vertices, faces)
-    if around_hollows:
-        lengths = lengths * _detour(vertices, faces, offsets, neighbours, lengths)
+    offsets, neighbours, lengths = around
+    if detour is not None:
+        lengths = lengths * detour
     # Vertices that share a place would have edges of no length, which a sparse table takes for none.
     table = csr_matrix((np.maximum(lengths, 1e-12), neighbours, offsets), shape=(len(vertices),) * 2)
     middle = int(np.argmin(((vertices - vertices.mean(axis=0)) ** 2).sum(axis=1)))
@@ -137,26 +140,28 @@ def _pieces(edges: NDArray[np.integer]) -> tuple[int, int]:
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
-    used, ends = np.unique(edges, return_inverse=True)
-    if not len(used):
+    size = int(edges.max(initial=-1)) + 1
+    if not size:
         return 0, 0
-    first, second = ends.reshape(-1, 2).T
-    table = coo_matrix((np.ones(len(first)), (first, second)), shape=(len(used), len(used)))
-    return int(connected_components(table, directed=False)[0]), len(used)
+    used = np.zeros(size, np.bool_)
+    used[edges] = True
+    table = coo_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(size, size))
+    count = int(used.sum())
+    # A number that no edge has would be a piece of its own.
+    return int(connected_components(table, directed=False)[0]) - (size - count), count
 
 
-def _detour(
-    vertices: Array, faces: Faces, offsets: NDArray[np.int64], neighbours: NDArray[np.int64], lengths: Array
-) -> Array:
+def _detour(vertices: Array, faces: Faces, around: Adjacency) -> Array:
     """How many times as long each edge counts: much where the surface bends inwards along it.
 
     A hand that rests on a hip is one surface with it; a way over the bridge between them goes through a hollow, one
     along the body does not.
     """
+    offsets, neighbours, lengths = around
     rows = np.repeat(np.arange(len(vertices)), np.diff(offsets))
     normals = vertex_normals(vertices, faces)
-    around = [np.bincount(rows, weights=normals[neighbours, axis], minlength=len(vertices)) for axis in range(3)]
-    normals = normals + np.stack(around, axis=1) / np.maximum(np.diff(offsets), 1)[:, None]
+    summed = [np.bincount(rows, weights=normals[neighbours, axis], minlength=len(vertices)) for axis in range(3)]
+    normals = normals + np.stack(summed, axis=1) / np.maximum(np.diff(offsets), 1)[:, None]
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     ways = vertices[neighbours] - vertices[rows]
     bend = -((normals[neighbours] - normals[rows]) * ways).sum(axis=1) / np.maximum(lengths, 1e-12) ** 2

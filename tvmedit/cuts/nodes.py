@@ -12,6 +12,8 @@ from tvmedit.compiled import compiled
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Adjacency = tuple[Index, Index, Array]
+"""Where each vertex's neighbours begin (v + 1,), the neighbours, how far each is."""
 FOLLOWED = 4
 """Nodes a vertex follows."""
 
@@ -40,12 +42,15 @@ class DeformationGraph:
     bandwidth: int
 
 
-def spread_nodes(vertices: Array, faces: NDArray[np.int32], spacing: float) -> DeformationGraph:
+def spread_nodes(
+    vertices: Array, faces: NDArray[np.int32], spacing: float, around: Adjacency | None = None
+) -> DeformationGraph:
     """Cover a mesh greedily with nodes about one spacing apart along the surface.
 
-    Distances run along edges, never through the air: otherwise a hand beside a hip would follow the hip.
+    Distances run along edges, never through the air: otherwise a hand beside a hip would follow the hip. ``around`` is
+    what ``adjacency`` gives, if it is there already.
     """
-    offsets, neighbours, lengths = adjacency(vertices, faces)
+    offsets, neighbours, lengths = around or adjacency(vertices, faces)
     chosen, bound, distances = _cover(len(vertices), offsets, neighbours, lengths, spacing)
     weights = np.exp(-((distances / spacing) ** 2))
     weights[~np.isfinite(distances)] = 0.0
@@ -85,7 +90,7 @@ def vertex_normals(vertices: Array, faces: NDArray[np.int32]) -> Array:
     return np.asarray(out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12))
 
 
-def adjacency(vertices: Array, faces: NDArray[np.int32]) -> tuple[Index, Index, Array]:
+def adjacency(vertices: Array, faces: NDArray[np.int32]) -> Adjacency:
     """Neighbours of each vertex with edge lengths, as one row-compressed table."""
     from scipy.sparse import coo_matrix
 

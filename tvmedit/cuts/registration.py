@@ -23,6 +23,8 @@ PERSON = 1.75
 SKIN = 2.2
 """Height in metres, and surface in square metres of a body that is large for it: what lies low is not small."""
 SAMPLES = 1000
+JUDGED = 4000
+"""So many vertices at most tell how near a fit has come: the last hundredth of them is many enough."""
 POINT_SHARE = 0.25
 FACING = 0.3
 """Cosine of the angle between the normals of two partners: about 72 degrees."""
@@ -82,6 +84,8 @@ class Registration:
 
         Its lowest part is as high as the share says between both ends, so that who stands on the ground stays on it.
         """
+        if share == 1.0:
+            return self._deformed(self.rotations, self.moves)
         shape = self._deformed(*partly(self.graph, self.rotations, self.moves, share))
         ends = _lowest(self.vertices), _lowest(self._deformed(self.rotations, self.moves))
         shape[:, 2] += (1.0 - share) * ends[0] + share * ends[1] - _lowest(shape)
@@ -211,9 +215,9 @@ def _astray(there: Registration, back: Registration) -> float:
     """How far 1 % of a mesh's vertices end from where they began, there and back by the nearest vertices."""
     from scipy.spatial import cKDTree
 
-    reached = there.between(1.0)
-    partner = cKDTree(back.vertices).query(reached)[1]
-    apart = np.linalg.norm(back.between(1.0)[partner] - there.vertices, axis=1)
+    some = evenly(len(there.vertices), JUDGED)
+    partner = cKDTree(back.vertices).query(there.between(1.0)[some])[1]
+    apart = np.linalg.norm(back.between(1.0)[partner] - there.vertices[some], axis=1)
     return float(np.quantile(apart, 0.99))
 
 
@@ -315,9 +319,9 @@ class _Fit:
         return turned, moves + change[:, 3:]
 
 
-def evenly(count: int) -> NDArray[np.int64]:
-    """Evenly spread numbers below a count, at most ``SAMPLES``."""
-    return np.unique(np.linspace(0, count - 1, min(SAMPLES, count)).astype(np.int64))
+def evenly(count: int, most: int = SAMPLES) -> NDArray[np.int64]:
+    """Evenly spread numbers below a count, so many at most."""
+    return np.unique(np.linspace(0, count - 1, min(most, count)).astype(np.int64))
 
 
 def _trust(far: Array, facing: Array, other: Array, gate: float) -> Array:
@@ -331,7 +335,7 @@ def _judged(found: Registration, target: Surface, edge: float) -> Registration:
     from scipy.spatial import cKDTree
 
     reached = found.between(1.0)
-    far = cKDTree(reached).query(target.vertices)[0]
+    far = cKDTree(reached).query(target.vertices[evenly(len(target.vertices), JUDGED)])[0]
     residual = float(np.quantile(far, 0.99))
     ends = 0.5 * (mesh_volume(found.vertices, found.faces) + target.volume)
     volume = mesh_volume(found.between(0.5), found.faces) / ends if ends > 0 else float("nan")

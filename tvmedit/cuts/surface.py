@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tvmedit.cuts.limbs import Ends, handle_count, limb_count, limb_ends
-from tvmedit.cuts.nodes import DeformationGraph, spread_nodes, vertex_normals
+from tvmedit.cuts.nodes import Adjacency, DeformationGraph, adjacency, spread_nodes, vertex_normals
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
@@ -45,6 +45,11 @@ class Surface:
         return vertex_normals(self.vertices, self.faces)
 
     @cached_property
+    def around(self) -> Adjacency:
+        """Neighbours of each vertex; see ``adjacency``."""
+        return adjacency(self.vertices, self.faces)
+
+    @cached_property
     def tree(self) -> cKDTree:
         """Search tree of the vertices."""
         from scipy.spatial import cKDTree
@@ -59,7 +64,7 @@ class Surface:
     @cached_property
     def limbs(self) -> int:
         """How many limbs hang free."""
-        return limb_count(self.vertices, self.faces)
+        return limb_count(self.vertices, self.faces, self.around)
 
     @cached_property
     def handles(self) -> int:
@@ -69,13 +74,14 @@ class Surface:
     def nodes(self, spacing: float) -> DeformationGraph:
         """Nodes spread over it; see ``spread_nodes``."""
         if spacing not in self._nodes:
-            self._nodes[spacing] = spread_nodes(self.vertices, self.faces, spacing)
+            self._nodes[spacing] = spread_nodes(self.vertices, self.faces, spacing, self.around)
         return self._nodes[spacing]
 
     def ends(self, *, around_hollows: bool) -> Ends | None:
         """Ends of the limbs; see ``limb_ends``."""
         if around_hollows not in self._ends:
-            self._ends[around_hollows] = limb_ends(self.vertices, self.faces, around_hollows=around_hollows)
+            found = limb_ends(self.vertices, self.faces, around_hollows=around_hollows, around=self.around)
+            self._ends[around_hollows] = found
         return self._ends[around_hollows]
 
 
