@@ -135,13 +135,13 @@ def _compare(
             for j in range(3):
                 x += shift[n, 0, j] * basis[k, j]
                 y += shift[n, 1, j] * basis[k, j]
-            u, v, z = placed(A[n], b[n], x, y, inverse[k])
-            if not (z > 0 and shown(hidden[n], u, v)):
+            u, v, z = placed(A, b, n, x, y, inverse[k])
+            if not (z > 0 and shown(hidden, n, u, v)):
                 continue
-            if nearer_before(front[n], u, v, width, height, inverse[k] / z, margin):
+            if nearer_before(front, n, u, v, width, height, inverse[k] / z, margin):
                 continue
             iu, iv = int(u), int(v)
-            red, green, blue = straight(stack[n], iu, iv, u - iu, v - iv)
+            red, green, blue = straight(stack, n, iu, iv, u - iu, v - iv)
             value = red * scale[n, 0] + green * scale[n, 1] + blue * scale[n, 2]
             rest = own[k] - value - bias[n]
             seen[n] += 1

@@ -147,32 +147,39 @@ def gather(
     return colour, count
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def placed(A: Any, b: Any, x: Any, y: Any, w: Any) -> Any:
-    """Where a frame shows a pixel's point of an inverse depth: x, y, and the share of its depth, above 0 in front."""
-    z = A[2, 0] * x + A[2, 1] * y + A[2, 2] + w * b[2]
-    return (A[0, 0] * x + A[0, 1] * y + A[0, 2] + w * b[0]) / z, (A[1, 0] * x + A[1, 1] * y + A[1, 2] + w * b[1]) / z, z
+# Frames are handed on as whole stacks and a number: a view of each would be counted, there and back, at every place.
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def shown(hidden: Any, u: Any, v: Any) -> bool:
-    """Whether all four pixels round a place lie in the frame and show background."""
-    height, width = hidden.shape
+def placed(A: Any, b: Any, n: int, x: Any, y: Any, w: Any) -> Any:
+    """Where frame n shows a pixel's point of an inverse depth: x, y, and the share of its depth, above 0 in front."""
+    z = A[n, 2, 0] * x + A[n, 2, 1] * y + A[n, 2, 2] + w * b[n, 2]
+    return (
+        (A[n, 0, 0] * x + A[n, 0, 1] * y + A[n, 0, 2] + w * b[n, 0]) / z,
+        (A[n, 1, 0] * x + A[n, 1, 1] * y + A[n, 1, 2] + w * b[n, 1]) / z,
+        z,
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def shown(hidden: Any, n: int, u: Any, v: Any) -> bool:
+    """Whether all four pixels round a place lie in frame n and show background."""
+    height, width = hidden.shape[1], hidden.shape[2]
     if not (u >= 0 and v >= 0 and u < width - 1.001 and v < height - 1.001):
         return False
     i, j = int(u), int(v)
-    return not (hidden[j, i] or hidden[j, i + 1] or hidden[j + 1, i] or hidden[j + 1, i + 1])
+    return not (hidden[n, j, i] or hidden[n, j, i + 1] or hidden[n, j + 1, i] or hidden[n, j + 1, i + 1])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def nearer_before(front: Any, u: Any, v: Any, width: int, height: int, w: Any, margin: Any) -> bool:
-    """Whether a frame sees something nearer at a pixel (or right beside it: depth ends a little astray)."""
-    high, wide = front.shape
+def nearer_before(front: Any, n: int, u: Any, v: Any, width: int, height: int, w: Any, margin: Any) -> bool:
+    """Whether frame n sees something nearer at a pixel (or right beside it: depth ends a little astray)."""
+    high, wide = front.shape[1], front.shape[2]
     i = int((u + 0.5) * wide / width)
     j = int((v + 0.5) * high / height)
     for y in range(max(0, j - 1), min(high, j + 2)):
         for x in range(max(0, i - 1), min(wide, i + 2)):
-            if front[y, x] > w + margin:
+            if front[n, y, x] > w + margin:
                 return True
     return False
 
@@ -187,30 +194,39 @@ def _weights(q: Any) -> Any:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def straight(picture: Any, x: int, y: int, q: Any, r: Any) -> Any:
-    """A picture's three channels between its pixels, along straight lines."""
+def straight(stack: Any, n: int, x: int, y: int, q: Any, r: Any) -> Any:
+    """The three channels of picture n between its pixels, along straight lines."""
     p, s = 1 - q, 1 - r
     return (
-        s * (p * picture[y, x, 0] + q * picture[y, x + 1, 0])
-        + r * (p * picture[y + 1, x, 0] + q * picture[y + 1, x + 1, 0]),
-        s * (p * picture[y, x, 1] + q * picture[y, x + 1, 1])
-        + r * (p * picture[y + 1, x, 1] + q * picture[y + 1, x + 1, 1]),
-        s * (p * picture[y, x, 2] + q * picture[y, x + 1, 2])
-        + r * (p * picture[y + 1, x, 2] + q * picture[y + 1, x + 1, 2]),
+        s * (p * stack[n, y, x, 0] + q * stack[n, y, x + 1, 0])
+        + r * (p * stack[n, y + 1, x, 0] + q * stack[n, y + 1, x + 1, 0]),
+        s * (p * stack[n, y, x, 1] + q * stack[n, y, x + 1, 1])
+        + r * (p * stack[n, y + 1, x, 1] + q * stack[n, y + 1, x + 1, 1]),
+        s * (p * stack[n, y, x, 2] + q * stack[n, y, x + 1, 2])
+        + r * (p * stack[n, y + 1, x, 2] + q * stack[n, y + 1, x + 1, 2]),
     )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _bent(picture: Any, x: int, y: int, q: Any, r: Any) -> Any:
-    """Its channels between its pixels by 4 x 4 of them: sharper than a straight line, by which fills went soft."""
+def _bent(stack: Any, n: int, x: int, y: int, q: Any, r: Any) -> Any:
+    """The same by 4 x 4 pixels: sharper than a straight line, by which fills went soft."""
     a, b, c, d = _weights(q)
     down = _weights(r)
     red, green, blue = 0.0, 0.0, 0.0
     for j in range(4):
-        row = picture[y + j - 1]
-        red += down[j] * (a * row[x - 1, 0] + b * row[x, 0] + c * row[x + 1, 0] + d * row[x + 2, 0])
-        green += down[j] * (a * row[x - 1, 1] + b * row[x, 1] + c * row[x + 1, 1] + d * row[x + 2, 1])
-        blue += down[j] * (a * row[x - 1, 2] + b * row[x, 2] + c * row[x + 1, 2] + d * row[x + 2, 2])
+        k = y + j - 1
+        red += down[j] * (
+            a * stack[n, k, x - 1, 0] + b * stack[n, k, x, 0]
+            + c * stack[n, k, x + 1, 0] + d * stack[n, k, x + 2, 0]
+        )  # fmt: skip
+        green += down[j] * (
+            a * stack[n, k, x - 1, 1] + b * stack[n, k, x, 1]
+            + c * stack[n, k, x + 1, 1] + d * stack[n, k, x + 2, 1]
+        )  # fmt: skip
+        blue += down[j] * (
+            a * stack[n, k, x - 1, 2] + b * stack[n, k, x, 2]
+            + c * stack[n, k, x + 1, 2] + d * stack[n, k, x + 2, 2]
+        )  # fmt: skip
     return min(max(red, 0.0), 255.0), min(max(green, 0.0), 255.0), min(max(blue, 0.0), 255.0)
 
 
@@ -226,15 +242,15 @@ def _samples(
     count = 0
     height, width = stack.shape[1], stack.shape[2]
     for n in range(stack.shape[0]):
-        u, v, z = placed(A[n], b[n], x, y, w)
-        if not (z > 0 and shown(hidden[n], u, v)):
+        u, v, z = placed(A, b, n, x, y, w)
+        if not (z > 0 and shown(hidden, n, u, v)):
             continue
         iu, iv = int(u), int(v)
-        if tested and nearer_before(front[n], u, v, width, height, w / z, margin):
+        if tested and nearer_before(front, n, u, v, width, height, w / z, margin):
             continue
         q, r = u - iu, v - iv
         inner = iu > 0 and iv > 0 and iu < width - 2 and iv < height - 2
-        red, green, blue = _bent(stack[n], iu, iv, q, r) if fine and inner else straight(stack[n], iu, iv, q, r)
+        red, green, blue = _bent(stack, n, iu, iv, q, r) if fine and inner else straight(stack, n, iu, iv, q, r)
         out[count, 0], out[count, 1], out[count, 2] = red * scale[n, 0], green * scale[n, 1], blue * scale[n, 2]
         count += 1
         if count == most:
