@@ -3,6 +3,8 @@
 
 On a plain wall noise decides, and what stands before it spreads over it. All pixels of the wall together do tell: the
 plane whose costs are least over the whole of it is taken, unless they are clearly worse than what was found before.
+Where a part of slightly other colour is clearly off that plane, the top of a box before a wall of its colour, it gets
+one of its own.
 """
 
 from __future__ import annotations
@@ -19,9 +21,11 @@ ALIKE = 8.0  # levels by which its rim may differ from the pixel beside it
 STEP = 3  # the same of five, within one part of a surface that is no plane as a whole
 RIM = 2  # pixels that smoothing has taken off
 SMALLEST = 60  # pixels of a surface, at a width of 480
+CORE = 40  # the same of the inner of one part of it, that no step is near
 TRIED = 60  # planes through three of its pixels
 ASKED = 6000  # pixels of a surface that are asked at most
 WORSE = 5.0  # levels of cost (0 to 255): single pixels fit their noise, so that a plane always costs a little more
+STRAY = 2 * WORSE  # the same for one part of a surface, fewer pixels than the whole
 STEEPEST = 3.0  # planes of the search per pixel
 WIDEST, NARROWEST = 5, 3  # pixels that a surface must at least extend over
 
@@ -41,7 +45,7 @@ def plain_surfaces(picture: NDArray[np.uint8], hidden: NDArray[np.uint8]) -> tup
         smooth = cv2.bilateralFilter(smooth, 7, sigma, 2.5)
     kernel = np.ones((3, 3), np.uint8)
     uneven = cv2.absdiff(cv2.dilate(smooth, kernel), cv2.erode(smooth, kernel)).max(axis=-1)
-    names, count = _numbered((uneven <= EVEN) & shown, max(hidden.shape))
+    names, count = _numbered((uneven <= EVEN) & shown, _least(hidden.shape))
     return _with_rims(names, smooth, shown), count
 
 
@@ -68,17 +72,28 @@ def parts_of(names: NDArray[np.int32], picture: NDArray[np.uint8]) -> tuple[NDAr
         calm = cv2.medianBlur(calm, 5)
     kernel = np.ones((2 * RIM + 1, 2 * RIM + 1), np.uint8)
     uneven = cv2.absdiff(cv2.dilate(calm, kernel), cv2.erode(calm, kernel)).max(axis=-1)
-    found, count = _numbered((uneven <= STEP) & shown, max(names.shape))
-    parts[box] = _with_rims(found, calm, shown, STEP)
-    return parts, count
+    # A strip of a few rows has a core of one or two: it is with its rims that a part must be large enough.
+    found, _ = _numbered((uneven <= STEP) & shown, CORE * (max(names.shape) / 480) ** 2)
+    for alike in (STEP, EVEN, ALIKE):
+        found = _with_rims(found, calm, shown, alike)
+    sizes = np.bincount(found.ravel())
+    large = np.flatnonzero(sizes[1:] >= _least(names.shape)) + 1
+    kept = np.zeros(len(sizes), np.int32)
+    kept[large] = np.arange(1, len(large) + 1)
+    parts[box] = kept[found]
+    return parts, len(large)
 
 
-def _numbered(even: NDArray[np.bool_], longest: int) -> tuple[NDArray[np.int32], int]:
-    """The connected areas (h, w) that are large enough in a picture so long, from 1; how many there are."""
+def _least(shape: tuple[int, ...]) -> float:
+    """Pixels of a surface, at least, in a picture (h, w)."""
+    return SMALLEST * (max(shape) / 480) ** 2
+
+
+def _numbered(even: NDArray[np.bool_], least: float) -> tuple[NDArray[np.int32], int]:
+    """The connected areas (h, w) of at least so many pixels, from 1; how many there are."""
     import cv2
 
     count, found, statistics, _ = cv2.connectedComponentsWithStats(even.astype(np.uint8), connectivity=4)
-    least = SMALLEST * (longest / 480) ** 2
     kept = np.zeros(count, np.int32)
     large = np.flatnonzero(statistics[1:, cv2.CC_STAT_AREA] >= least) + 1
     kept[large] = np.arange(1, len(large) + 1)
@@ -120,11 +135,21 @@ def with_planes(
     """
     names, count = plain_surfaces(picture, hidden)
     result = plane.copy()
-    refused = _lay(result, plane, volume, names, count, apart)
+    if not count:
+        return result
+    parts = _parted(names, parts_of(names, picture)[0])
+    # What is no plane, or of which a part is not on it, may be two surfaces of nearly one colour.
+    refused = _lay(result, plane, volume, names, apart, parts)
     if refused.any():
-        # What is no plane may be two surfaces of nearly one colour.
-        _lay(result, plane, volume, *parts_of(np.where(refused, names, 0), picture), apart)
+        _lay(result, plane, volume, np.where(refused, parts, 0), apart)
     return result
+
+
+def _parted(names: NDArray[np.int32], parts: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Number the parts (h, w) of each surface for itself, 0 where there is none."""
+    keys = np.where((names > 0) & (parts > 0), names.astype(np.int64) * (int(parts.max()) + 1) + parts, 0)
+    numbered = np.unique(np.append(keys.ravel(), 0), return_inverse=True)[1][:-1]
+    return numbered.reshape(names.shape).astype(np.int32)
 
 
 def _lay(
@@ -132,33 +157,78 @@ def _lay(
     plane: NDArray[np.float32],
     volume: NDArray[np.uint8],
     names: NDArray[np.int32],
-    count: int,
     apart: float,
+    parts: NDArray[np.int32] | None = None,
 ) -> NDArray[np.bool_]:
-    """Lay numbered surfaces onto planes, in place; which pixels (h, w) belong to one that is none."""
+    """Lay numbered surfaces onto planes, in place; which pixels (h, w) belong to one that is none.
+
+    With ``parts`` (h, w), those of a surface that its plane explains badly are refused by themselves: on a large wall
+    the small top of a box before it costs little, and would go with the wall. Without, the names are such parts.
+    """
     refused = np.zeros(names.shape, bool)
-    if not count:
-        return refused
+    count = int(names.max(initial=0))
     order = np.argsort(names, axis=None, kind="stable")
     ends = np.searchsorted(names.ravel()[order], np.arange(1, count + 2))
     random = np.random.default_rng(0)
     last = np.float64(volume.shape[2] - 1)
     for first, end in pairwise(ends):
         rows, columns = np.unravel_index(order[first:end], names.shape)
-        if np.ptp(columns) < WIDEST or np.ptp(rows) < NARROWEST:
+        if not _extended(rows, columns):
             continue
-        step = -(-len(rows) // ASKED)
-        y, x = np.ascontiguousarray(rows[::step]), np.ascontiguousarray(columns[::step])
-        own = _cost_found(volume, x, y, plane)
-        corners = random.integers(0, len(x), (TRIED, 3))
-        best, cost = _fit(volume, x, y, plane, corners)
-        if cost > own + WORSE:
+        worse = STRAY if parts is None else WORSE
+        best, fits = _plane_of(volume, rows, columns, plane, worse, random)
+        if fits and parts is not None:
+            stray = _strays(volume, rows, columns, plane, best, parts[rows, columns])
+            if stray.any():
+                refused[rows[stray], columns[stray]] = True
+                rows, columns = rows[~stray], columns[~stray]
+                if not _extended(rows, columns):
+                    continue
+                best, fits = _plane_of(volume, rows, columns, plane, worse, random)
+        if not fits:
             refused[rows, columns] = True
             continue
         laid = np.clip(best[0] + best[1] * columns + best[2] * rows, 0, last)
         found = plane[rows, columns]
         result[rows, columns] = np.where(np.abs(laid - found) >= apart, laid, found)
     return refused
+
+
+def _extended(rows: NDArray[np.int64], columns: NDArray[np.int64]) -> bool:
+    """Whether pixels extend far enough to tell a plane."""
+    return len(rows) > 0 and bool(np.ptp(columns) >= WIDEST and np.ptp(rows) >= NARROWEST)
+
+
+def _plane_of(
+    volume: NDArray[np.uint8],
+    rows: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    plane: NDArray[np.float32],
+    worse: float,
+    random: np.random.Generator,
+) -> tuple[NDArray[np.float64], bool]:
+    """The plane (level, across, down) of least cost for pixels, and whether it is at most so much worse than found."""
+    step = -(-len(rows) // ASKED)
+    y, x = np.ascontiguousarray(rows[::step]), np.ascontiguousarray(columns[::step])
+    best, cost = _fit(volume, x, y, plane, random.integers(0, len(x), (TRIED, 3)))
+    return best, bool(cost <= _cost_found(volume, x, y, plane) + worse)
+
+
+def _strays(
+    volume: NDArray[np.uint8],
+    rows: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    plane: NDArray[np.float32],
+    best: NDArray[np.float64],
+    part: NDArray[np.int32],
+) -> NDArray[np.bool_]:
+    """Which of a surface's pixels (k,) are of a part for which its plane costs clearly more than what was found."""
+    stray = np.zeros(len(rows), bool)
+    for name in np.unique(part[part > 0]):
+        mine = part == name
+        x, y = columns[mine], rows[mine]
+        stray[mine] = _cost(volume, x, y, *best) > _cost_found(volume, x, y, plane) + STRAY
+    return stray
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -82,6 +82,27 @@ def test_two_planes_of_nearly_one_colour_are_parted() -> None:
     assert np.abs(laid - truth)[inner].mean() < 0.4 < 1.5 < np.abs(found - truth)[inner].mean()
 
 
+def test_the_top_of_a_box_does_not_go_with_the_wall_behind_it() -> None:
+    """A strip of six rows, eight levels from the wall's colour: one surface to smoothing, a small part of its costs."""
+    picture, _ = two_walls()
+    random = np.random.default_rng(11)
+    rows = np.mgrid[: SIZE[0], : SIZE[1]][0]
+    wall, top, front = (np.zeros(SIZE, bool) for _ in range(3))
+    wall[2:44, 6:74], top[38:44, 16:64], front[44:56, 16:64] = True, True, True
+    wall &= ~top
+    for mine, colour in ((wall, (118, 145, 122)), (top, (126, 148, 120)), (front, (150, 100, 150))):
+        picture[mine] = np.rint(np.array(colour) + random.normal(size=(*SIZE, 3)) * 1.5).astype(np.uint8)[mine]
+    truth = np.where(top, 16 + 0.4 * (rows - 38.0), np.where(front, 18.4, 5.0))
+    found = (truth + 0.5 * random.normal(size=SIZE)).astype(np.float32)
+    hidden = np.zeros(SIZE, np.uint8)
+    names = plain_surfaces(picture, hidden)[0]
+    assert names[41, 40] == names[20, 40] != names[50, 40]
+    laid = with_planes(found, costs(truth, 5, 40.0), picture, hidden)
+    off = np.abs(laid - truth)
+    assert (off[top] > 2).mean() < 0.1
+    assert max(off[wall].mean(), off[front].mean()) < 0.4
+
+
 def test_a_curved_surface_that_its_costs_show_stays() -> None:
     """Of one colour, but no plane: what single pixels tell clearly is kept, to the bit."""
     picture, _ = two_walls()
