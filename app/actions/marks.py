@@ -51,9 +51,19 @@ def click_named(session: Session, name: str, frame: int, point: Iterable[float])
 
 
 def pair_named(session: Session, character: str | None, track: str, vertex: int) -> None:
-    """Pair a track with a vertex."""
+    """Pair a track with a vertex; ``InputError`` for one that the mesh does not have."""
     found = character_named(session.document, character)
-    session.apply(characters.set_pair(session.document, found.id, track_named(session.document, track).id, vertex))
+    followed = track_named(session.document, track)
+    try:
+        count = len(session.media.mesh(found.mesh).vertices)
+    except InputError:
+        count = vertex + 1  # a mesh that is not there says what it has once it is: solving looks again
+    if vertex >= count:
+        raise InputError(
+            f"{found.name} has no vertex {vertex} to pair {followed.name} with: its mesh has {count}, "
+            f"numbered from 0 to {count - 1}."
+        )
+    session.apply(characters.set_pair(session.document, found.id, followed.id, vertex))
 
 
 def apply_marks(session: Session, path: Path, *, copy: bool = False) -> None:

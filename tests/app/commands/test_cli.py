@@ -160,14 +160,22 @@ def test_exit_codes_and_one_sentence(
         assert "Traceback" not in said
 
 
-def test_a_pair_that_the_mesh_does_not_have_is_told_on_solving(
-    project: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """A vertex beyond the mesh is refused when the mesh is there to know it, and earlier results stay."""
-    run(["--quiet", "set", str(project), "--pair", "subject", "nose", "99999"])
+def test_a_pair_that_the_mesh_does_not_have_is_told_at_once(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A vertex beyond the mesh is refused by the names that were typed, and earlier results stay."""
+    assert run(["--quiet", "set", str(project), "--pair", "subject", "nose", "99999"]) == BAD_INPUT
+    assert "subject has no vertex 99999 to pair nose with" in capsys.readouterr().err
+    assert {step["state"] for step in answer(capsys, "info", project)["steps"].values()} == {"fresh"}
+
+
+def test_a_pair_of_a_mesh_that_is_away_is_told_on_solving(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Whether it has such a vertex is seen once the mesh is there again."""
+    file = project / "project.json"
+    before = file.read_text()
+    file.write_text(before.replace("subject.ply", "away.ply"))
+    assert run(["--quiet", "set", str(project), "--pair", "subject", "nose", "99999"]) == DONE
+    file.write_text(file.read_text().replace("away.ply", "subject.ply"))
     assert run(["--quiet", "animate", str(project)]) == BAD_INPUT
     assert "99999" in capsys.readouterr().err
-    assert answer(capsys, "info", project)["steps"]["cameras"]["state"] == "fresh"
 
 
 def test_a_missing_medium_is_named(project: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
