@@ -15,6 +15,8 @@ Faces = NDArray[np.int32]
 def mesh_areas(vertices: Array, faces: Faces) -> tuple[Array, Array, float]:
     """A third of its triangles' areas for each vertex, the running sum of areas, and the mean edge length.
 
+    Faces as ``check_faces`` lets them through: none names a vertex that is not there.
+
     Returns
     -------
     (v,) float64, squared unit
@@ -27,9 +29,11 @@ def mesh_areas(vertices: Array, faces: Faces) -> tuple[Array, Array, float]:
     running = np.empty(len(faces))
     edges, counted, total = 0.0, 0, 0.0
     for f in range(len(faces)):
-        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-        ax, ay, az = vertices[j, 0] - vertices[i, 0], vertices[j, 1] - vertices[i, 1], vertices[j, 2] - vertices[i, 2]
-        bx, by, bz = vertices[k, 0] - vertices[i, 0], vertices[k, 1] - vertices[i, 1], vertices[k, 2] - vertices[i, 2]
+        # Unsigned: a negative number would have to be looked for at the end of the array.
+        i, j, k = np.uint32(faces[f, 0]), np.uint32(faces[f, 1]), np.uint32(faces[f, 2])
+        px, py, pz = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+        ax, ay, az = vertices[j, 0] - px, vertices[j, 1] - py, vertices[j, 2] - pz
+        bx, by, bz = vertices[k, 0] - px, vertices[k, 1] - py, vertices[k, 2] - pz
         cx, cy, cz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
         twice = np.sqrt(cx * cx + cy * cy + cz * cz)
         total += twice
