@@ -55,16 +55,26 @@ def projected_inverse(
 ) -> NDArray[np.float32]:
     """The same for inverse depths (h, w), 0 where none, that a camera ``source`` sees."""
     maps = geometry((source.K, source.R, source.T), [(camera.K, camera.R, camera.T)])
-    shape = size[::-1]
+    # A border of a pixel takes what falls beside the picture.
+    shape = size[1] + 2, size[0] + 2
     front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
-    picked = np.ones((1, 1), np.bool_) if wanted is None else wanted
-    high, wide = (-(-side // TILE) for side in picked.shape)
-    padded = np.zeros((high * TILE, wide * TILE), np.bool_)
-    padded[: picked.shape[0], : picked.shape[1]] = picked
-    tiles = padded.reshape(high, TILE, wide, TILE).any(axis=(1, 3))
+    tiles: NDArray[np.bool_] = np.ones((1, 1), np.bool_)
+    touched = tiles
+    if wanted is not None:
+        high, wide = (-(-side // TILE) for side in wanted.shape)
+        padded = np.zeros((high * TILE + 2, wide * TILE + 2), np.bool_)
+        padded[1 : size[1] + 1, 1 : size[0] + 1] = wanted
+        tiles = padded[1:-1, 1:-1].reshape(high, TILE, wide, TILE).any(axis=(1, 3))
+        either = padded[: size[1] + 1] | padded[1 : size[1] + 2]
+        touched = either[:, : size[0] + 1] | either[:, 1 : size[0] + 2]
+    useful = np.ones((inverse.shape[0], -(-inverse.shape[1] // TILE)), np.bool_)
     for collect in (False, True):
-        _splat(inverse, maps.A[0], maps.b[0], front, total, weight, collect, picked, tiles, wanted is not None)
-    return np.divide(total, weight, out=np.zeros_like(total), where=weight > 0)
+        _splat(
+            inverse, maps.A[0], maps.b[0], front, total, weight, collect, touched, tiles, wanted is not None, useful
+        )  # fmt: skip
+    total, weight = total[1:-1, 1:-1], weight[1:-1, 1:-1]
+    there = weight > 0 if wanted is None else wanted & (weight > 0)
+    return np.divide(total, weight, out=np.zeros(size[::-1], np.float32), where=there)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -102,46 +112,64 @@ def _falls(inverse: Any, y: int, first: int, last: int, A: Any, b: Any, tiles: A
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _splat(
-    inverse: Any, A: Any, b: Any, front: Any, total: Any, weight: Any, collect: bool, wanted: Any, tiles: Any,
-    some: bool,
+    inverse: Any, A: Any, b: Any, front: Any, total: Any, weight: Any, collect: bool, touched: Any, tiles: Any,
+    some: bool, useful: Any,
 ) -> None:  # fmt: skip
-    height, width = front.shape
+    """One pass over a map: what is in front (h + 2, w + 2), or the sums of what belongs to it.
+
+    ``touched`` (h + 1, w + 1) is which of the fours of pixels, by their lower right one, hold a pixel that is wanted.
+    """
+    height, width = front.shape[0] - 2, front.shape[1] - 2
     # Held in local names: what is written might otherwise be them, as far as the compiler knows.
     a00, a01, a02, b0 = A[0, 0], A[0, 1], A[0, 2], b[0]
     a10, a11, a12, b1 = A[1, 0], A[1, 1], A[1, 2], b[1]
     a20, a21, a22, b2 = A[2, 0], A[2, 1], A[2, 2], b[2]
+    us, vs, nears = np.empty(TILE), np.empty(TILE), np.empty(TILE)
     for y in range(inverse.shape[0]):
-        useful = True
-        for x in range(inverse.shape[1]):
-            if some and x % TILE == 0:
-                useful = _falls(inverse, y, x, min(x + TILE, inverse.shape[1]), A, b, tiles)
-            if not useful:
+        for tile in range(useful.shape[1]):
+            first = tile * TILE
+            count = min(TILE, inverse.shape[1] - first)
+            if some and not collect:
+                useful[y, tile] = _falls(inverse, y, first, first + count, A, b, tiles)
+            if not useful[y, tile]:
                 continue
-            w = inverse[y, x]
-            if w <= 0:
-                continue
-            z = a20 * x + a21 * y + a22 + w * b2
-            if z <= 0:
-                continue
-            u = (a00 * x + a01 * y + a02 + w * b0) / z
-            v = (a10 * x + a11 * y + a12 + w * b1) / z
-            if not (u > -1 and v > -1 and u < width and v < height):
-                continue
-            there = w / z
-            iu, iv = int(np.floor(u)), int(np.floor(v))
-            for dy in range(2):
-                for dx in range(2):
-                    px, py = iu + dx, iv + dy
-                    if px < 0 or py < 0 or px >= width or py >= height or (some and not wanted[py, px]):
-                        continue
-                    share = (1 - abs(u - px)) * (1 - abs(v - py))
-                    if not collect:
-                        # A splat that hardly touches a pixel must not hide what lies behind it.
-                        if share > 0.1 and there > front[py, px]:
-                            front[py, px] = there
-                    elif there >= front[py, px] * (1 - FRONT):
-                        total[py, px] += np.float32(share * there)
-                        weight[py, px] += np.float32(share)
+            # All places first, without a branch: they are worked out several at once.
+            for k in range(count):
+                x, w = np.int32(first + k), inverse[y, first + k]
+                z = a20 * x + a21 * y + a22 + w * b2
+                us[k] = (a00 * x + a01 * y + a02 + w * b0) / z
+                vs[k] = (a10 * x + a11 * y + a12 + w * b1) / z
+                nears[k] = w / z
+            for k in range(count):
+                u, v, there = us[k], vs[k], nears[k]
+                if not (inverse[y, first + k] > 0 and there > 0 and u > -1 and v > -1 and u < width and v < height):
+                    continue
+                iu, iv = np.floor(u), np.floor(v)
+                i, j = np.uint64(iu + 1), np.uint64(iv + 1)
+                if some and not touched[j, i]:
+                    continue
+                left, right, upper, lower = 1 - (u - iu), 1 - ((iu + 1) - u), 1 - (v - iv), 1 - ((iv + 1) - v)
+                ii, jj = np.uint64(iu + 2), np.uint64(iv + 2)
+                if not collect:
+                    # A splat that hardly touches a pixel must not hide what lies behind it.
+                    near = np.float32(there)
+                    front[j, i] = max(front[j, i], near if left * upper > 0.1 else np.float32(0))
+                    front[j, ii] = max(front[j, ii], near if right * upper > 0.1 else np.float32(0))
+                    front[jj, i] = max(front[jj, i], near if left * lower > 0.1 else np.float32(0))
+                    front[jj, ii] = max(front[jj, ii], near if right * lower > 0.1 else np.float32(0))
+                    continue
+                if there >= front[j, i] * (1 - FRONT):
+                    total[j, i] += np.float32(left * upper * there)
+                    weight[j, i] += np.float32(left * upper)
+                if there >= front[j, ii] * (1 - FRONT):
+                    total[j, ii] += np.float32(right * upper * there)
+                    weight[j, ii] += np.float32(right * upper)
+                if there >= front[jj, i] * (1 - FRONT):
+                    total[jj, i] += np.float32(left * lower * there)
+                    weight[jj, i] += np.float32(left * lower)
+                if there >= front[jj, ii] * (1 - FRONT):
+                    total[jj, ii] += np.float32(right * lower * there)
+                    weight[jj, ii] += np.float32(right * lower)
 
 
 def consensus(
@@ -164,19 +192,26 @@ def consensus(
 @njit(cache=True, nogil=True, error_model="numpy")
 def _vote(layers: Any, tolerance: Any, worth: Any, best: Any, support: Any) -> None:
     count, height, width = layers.shape
+    there, its = np.empty(count, np.float32), np.empty(count, np.float32)
     for y in range(height):
         for x in range(width):
-            top = np.float32(-1)
+            known, low, high = 0, np.float32(np.inf), np.float32(0)
             for i in range(count):
                 w = layers[i, y, x]
-                if w <= 0:
-                    continue
+                if w > 0:
+                    there[known], its[known] = w, worth[i]
+                    known += 1
+                    low, high = min(low, w), max(high, w)
+            top = np.float32(-1)
+            # Where all support each other, the first has as many votes as any, and the same mean.
+            for i in range(min(known, 1) if high - low <= tolerance else known):
+                w = there[i]
                 votes, total, weight, number = np.float32(0), np.float32(0), np.float32(0), 0
-                for j in range(count):
-                    if layers[j, y, x] > 0 and abs(layers[j, y, x] - w) <= tolerance:
-                        votes += worth[j]
-                        total += worth[j] * layers[j, y, x]
-                        weight += worth[j]
+                for j in range(known):
+                    if abs(there[j] - w) <= tolerance:
+                        votes += its[j]
+                        total += its[j] * there[j]
+                        weight += its[j]
                         number += 1
                 if votes > top + 1e-6 or (votes > top - 1e-6 and w > best[y, x]):
                     top = votes

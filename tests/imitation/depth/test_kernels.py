@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from imitation.depth.agreement import agreeing
-from imitation.depth.projection import consensus
+from imitation.depth.projection import FRONT, consensus, projected_inverse
 from imitation.depth.semiglobal import FINE, LARGE, LEAST, SMALL, SOFTENING, semiglobal
 from imitation.depth.sweep import (
     FLOOR,
@@ -156,3 +156,71 @@ def test_consensus_takes_what_most_say() -> None:
     best, support = consensus(layers, 0.001)
     np.testing.assert_allclose(best[0], [0.2002, 0.3, 0.0], atol=1e-6)
     np.testing.assert_array_equal(support[0], [2, 1, 0])
+
+
+def plain_projection(inverse: np.ndarray, source: Camera, camera: Camera, size: tuple[int, int]) -> np.ndarray:
+    """Splats pixel by pixel, in the kernel's precision."""
+    maps = geometry((source.K, source.R, source.T), [(camera.K, camera.R, camera.T)])
+    A, b = maps.A[0], maps.b[0]
+    splats = []
+    for y, x in zip(*np.nonzero(inverse > 0), strict=True):
+        w = inverse[y, x]
+        a = [float(A[r, 0]) * x + float(A[r, 1]) * y + float(A[r, 2]) + float(w * b[r]) for r in range(3)]
+        if a[2] <= 0:
+            continue
+        u, v = a[0] / a[2], a[1] / a[2]
+        four = [(int(np.floor(v)) + dy, int(np.floor(u)) + dx) for dy in (0, 1) for dx in (0, 1)]
+        inside = [(py, px) for py, px in four if 0 <= px < size[0] and 0 <= py < size[1]]
+        splats += [(py, px, float(w) / a[2], (1 - abs(u - px)) * (1 - abs(v - py))) for py, px in inside]
+    front, total, weight = (np.zeros(size[::-1], np.float32) for _ in range(3))
+    for py, px, there, share in splats:
+        if share > 0.1:
+            front[py, px] = max(front[py, px], np.float32(there))
+    for py, px, there, share in splats:
+        if there >= float(front[py, px]) * (1 - FRONT):
+            total[py, px] += np.float32(share * there)
+            weight[py, px] += np.float32(share)
+    return np.divide(total, weight, out=np.zeros_like(total), where=weight > 0)
+
+
+@pytest.mark.parametrize("ahead", [0.0, 5.0], ids=["beside", "among"])
+def test_projection_against_plain_code(ahead: float) -> None:
+    """The same to the bit, over the picture's border, through a map's gaps, and for what lies behind the camera."""
+    random = np.random.default_rng(4)
+    inverse = random.uniform(0.05, 0.4, (34, 70)).astype(np.float32)
+    inverse[random.random(inverse.shape) < 0.2] = 0
+    K = np.array([[60.0, 0, 34.5], [0, 60.0, 16.5], [0, 0, 1]])
+    turn = cv2.Rodrigues(np.array([0.03, -0.05, 0.2]))[0]
+    size = (75, 37)
+    here, there = Camera(K, np.eye(3), np.zeros(3)), Camera(K, turn, np.array([0.9, -0.4, -ahead]))
+    expected = plain_projection(inverse, here, there, size)
+    assert 0.2 < (expected > 0).mean() < 1
+    np.testing.assert_array_equal(projected_inverse(inverse, here, there, size), expected)
+    wanted = random.random(expected.shape) < 0.05
+    wanted[:, 0] = wanted[-1] = True
+    part = projected_inverse(inverse, here, there, size, wanted)
+    np.testing.assert_array_equal(part, np.where(wanted, expected, 0))
+
+
+@pytest.mark.parametrize("ranked", [False, True])
+def test_consensus_against_plain_code(ranked: bool) -> None:
+    """The same to the bit, where all layers agree and where they part."""
+    random = np.random.default_rng(6)
+    layers = (0.2 + 0.01 * random.integers(0, 3, (6, 40, 30)) + random.normal(0, 4e-4, (6, 40, 30))).astype(np.float32)
+    layers[:, ::2] = (0.2 + random.normal(0, 3e-4, layers[:, ::2].shape)).astype(np.float32)
+    layers[random.random(layers.shape) < 0.3] = 0
+    worth = (1 / (1 + 0.15 * np.arange(6))).astype(np.float32) if ranked else np.ones(6, np.float32)
+    best, support = np.zeros((40, 30), np.float32), np.zeros((40, 30), np.uint8)
+    for place in np.ndindex(best.shape):
+        said = layers[:, *place]
+        top = -1.0
+        for w in said[said > 0]:
+            votes, total, weight = np.float32(0), np.float32(0), np.float32(0)
+            with_it = (said > 0) & (np.abs(said - w) <= np.float32(0.001))
+            for k in np.flatnonzero(with_it):
+                votes, total, weight = votes + worth[k], total + worth[k] * said[k], weight + worth[k]
+            if votes > top + 1e-6 or (votes > top - 1e-6 and w > best[place]):
+                top, best[place], support[place] = float(votes), total / weight, with_it.sum()
+    found = consensus(layers, 0.001, worth if ranked else None)
+    np.testing.assert_array_equal(found[0], best)
+    np.testing.assert_array_equal(found[1], support)
