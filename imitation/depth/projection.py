@@ -55,26 +55,50 @@ def projected_inverse(
 ) -> NDArray[np.float32]:
     """The same for inverse depths (h, w), 0 where none, that a camera ``source`` sees."""
     maps = geometry((source.K, source.R, source.T), [(camera.K, camera.R, camera.T)])
-    # A border of a pixel takes what falls beside the picture.
-    shape = size[1] + 2, size[0] + 2
-    front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
-    tiles: NDArray[np.bool_] = np.ones((1, 1), np.bool_)
-    touched = tiles
+    made = np.zeros(size[::-1], np.float32)
+    box = (0, 0, size[1], size[0]) if wanted is None else _box(wanted)
+    if box is None:
+        return made
+    top, left, bottom, right = box
+    tiles = touched = np.ones((1, 1), np.bool_)
     if wanted is not None:
-        high, wide = (-(-side // TILE) for side in wanted.shape)
-        padded = np.zeros((high * TILE + 2, wide * TILE + 2), np.bool_)
-        padded[1 : size[1] + 1, 1 : size[0] + 1] = wanted
-        tiles = padded[1:-1, 1:-1].reshape(high, TILE, wide, TILE).any(axis=(1, 3))
-        either = padded[: size[1] + 1] | padded[1 : size[1] + 2]
-        touched = either[:, : size[0] + 1] | either[:, 1 : size[0] + 2]
+        tiles, touched = _marked(wanted, box)
+    # A border of a pixel takes what falls beside the picture.
+    shape = bottom - top + 2, right - left + 2
+    front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
     useful = np.ones((inverse.shape[0], -(-inverse.shape[1] // TILE)), np.bool_)
     for collect in (False, True):
         _splat(
-            inverse, maps.A[0], maps.b[0], front, total, weight, collect, touched, tiles, wanted is not None, useful
+            inverse, maps.A[0], maps.b[0], top, left, front, total, weight, collect, touched, tiles,
+            wanted is not None, useful,
         )  # fmt: skip
+    part = slice(top, bottom), slice(left, right)
     total, weight = total[1:-1, 1:-1], weight[1:-1, 1:-1]
-    there = weight > 0 if wanted is None else wanted & (weight > 0)
-    return np.divide(total, weight, out=np.zeros(size[::-1], np.float32), where=there)
+    there = weight > 0 if wanted is None else wanted[part] & (weight > 0)
+    np.divide(total, weight, out=made[part], where=there)
+    return made
+
+
+def _box(wanted: NDArray[np.bool_]) -> tuple[int, int, int, int] | None:
+    """First row and column and those after the last that hold a wanted pixel; None where there is none."""
+    rows, columns = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
+    if not len(rows):
+        return None
+    return int(rows[0]), int(columns[0]), int(rows[-1]) + 1, int(columns[-1]) + 1
+
+
+def _marked(wanted: NDArray[np.bool_], box: tuple[int, int, int, int]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Tiles of a picture that hold a wanted pixel, and fours of pixels of a box (h + 1, w + 1), by the lower right."""
+    top, left, bottom, right = box
+    high, wide = (-(-side // TILE) for side in wanted.shape)
+    padded = np.zeros((high * TILE, wide * TILE), np.bool_)
+    padded[: wanted.shape[0], : wanted.shape[1]] = wanted
+    tiles = np.asarray(padded.reshape(high, TILE, wide, TILE).any(axis=(1, 3)))
+    touched = np.zeros((bottom - top + 1, right - left + 1), np.bool_)
+    for down in (slice(None, -1), slice(1, None)):
+        for across in (slice(None, -1), slice(1, None)):
+            touched[down, across] |= wanted[top:bottom, left:right]
+    return tiles, touched
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -112,14 +136,11 @@ def _falls(inverse: Any, y: int, first: int, last: int, A: Any, b: Any, tiles: A
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _splat(
-    inverse: Any, A: Any, b: Any, front: Any, total: Any, weight: Any, collect: bool, touched: Any, tiles: Any,
-    some: bool, useful: Any,
+    inverse: Any, A: Any, b: Any, top: int, left: int, front: Any, total: Any, weight: Any, collect: bool,
+    touched: Any, tiles: Any, some: bool, useful: Any,
 ) -> None:  # fmt: skip
-    """One pass over a map: what is in front (h + 2, w + 2), or the sums of what belongs to it.
-
-    ``touched`` (h + 1, w + 1) is which of the fours of pixels, by their lower right one, hold a pixel that is wanted.
-    """
-    height, width = front.shape[0] - 2, front.shape[1] - 2
+    """One pass over a map: what is in front in a box of the picture (h + 2, w + 2), or sums of what belongs to it."""
+    above, beside, below, beyond = top - 1, left - 1, top + front.shape[0] - 2, left + front.shape[1] - 2
     # Held in local names: what is written might otherwise be them, as far as the compiler knows.
     a00, a01, a02, b0 = A[0, 0], A[0, 1], A[0, 2], b[0]
     a10, a11, a12, b1 = A[1, 0], A[1, 1], A[1, 2], b[1]
@@ -142,34 +163,36 @@ def _splat(
                 nears[k] = w / z
             for k in range(count):
                 u, v, there = us[k], vs[k], nears[k]
-                if not (inverse[y, first + k] > 0 and there > 0 and u > -1 and v > -1 and u < width and v < height):
+                if not (
+                    inverse[y, first + k] > 0 and there > 0 and u > beside and v > above and u < beyond and v < below
+                ):
                     continue
                 iu, iv = np.floor(u), np.floor(v)
-                i, j = np.uint64(iu + 1), np.uint64(iv + 1)
+                i, j = np.uint64(np.int64(iu - beside)), np.uint64(np.int64(iv - above))
                 if some and not touched[j, i]:
                     continue
-                left, right, upper, lower = 1 - (u - iu), 1 - ((iu + 1) - u), 1 - (v - iv), 1 - ((iv + 1) - v)
-                ii, jj = np.uint64(iu + 2), np.uint64(iv + 2)
+                ii, jj = i + np.uint64(1), j + np.uint64(1)
+                west, east, north, south = 1 - (u - iu), 1 - ((iu + 1) - u), 1 - (v - iv), 1 - ((iv + 1) - v)
                 if not collect:
                     # A splat that hardly touches a pixel must not hide what lies behind it.
                     near = np.float32(there)
-                    front[j, i] = max(front[j, i], near if left * upper > 0.1 else np.float32(0))
-                    front[j, ii] = max(front[j, ii], near if right * upper > 0.1 else np.float32(0))
-                    front[jj, i] = max(front[jj, i], near if left * lower > 0.1 else np.float32(0))
-                    front[jj, ii] = max(front[jj, ii], near if right * lower > 0.1 else np.float32(0))
+                    front[j, i] = max(front[j, i], near if west * north > 0.1 else np.float32(0))
+                    front[j, ii] = max(front[j, ii], near if east * north > 0.1 else np.float32(0))
+                    front[jj, i] = max(front[jj, i], near if west * south > 0.1 else np.float32(0))
+                    front[jj, ii] = max(front[jj, ii], near if east * south > 0.1 else np.float32(0))
                     continue
                 if there >= front[j, i] * (1 - FRONT):
-                    total[j, i] += np.float32(left * upper * there)
-                    weight[j, i] += np.float32(left * upper)
+                    total[j, i] += np.float32(west * north * there)
+                    weight[j, i] += np.float32(west * north)
                 if there >= front[j, ii] * (1 - FRONT):
-                    total[j, ii] += np.float32(right * upper * there)
-                    weight[j, ii] += np.float32(right * upper)
+                    total[j, ii] += np.float32(east * north * there)
+                    weight[j, ii] += np.float32(east * north)
                 if there >= front[jj, i] * (1 - FRONT):
-                    total[jj, i] += np.float32(left * lower * there)
-                    weight[jj, i] += np.float32(left * lower)
+                    total[jj, i] += np.float32(west * south * there)
+                    weight[jj, i] += np.float32(west * south)
                 if there >= front[jj, ii] * (1 - FRONT):
-                    total[jj, ii] += np.float32(right * lower * there)
-                    weight[jj, ii] += np.float32(right * lower)
+                    total[jj, ii] += np.float32(east * south * there)
+                    weight[jj, ii] += np.float32(east * south)
 
 
 def consensus(
