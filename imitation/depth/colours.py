@@ -18,6 +18,7 @@ Picture = NDArray[np.uint8]
 SUPPORT = 2.5  # grey levels of disagreement that one more key frame with the same depth outweighs
 AGAINST = 8.0  # grey levels that a key frame counts against a depth that it sees through
 ASKED = 3000  # points of a picture that are asked how bright it is
+TOLD = 40  # of them that must tell
 SEEN = 4  # frames that must see a place, or else those speak too that see something nearer: depth may be wrong
 UNSEEN = 40.0  # disagreement of a depth that fewer than two frames can judge
 
@@ -40,22 +41,34 @@ def gains(
     rows, columns = rows.ravel(), columns.ravel()
     use = ~hole[rows, columns] & (inverse[rows, columns] > 0)
     rows, columns = rows[use], columns[use]
-    own = picture[rows, columns].astype(np.float64)
+    own = picture[rows, columns]
     scale = np.ones((len(poses), 3), np.float32)
     points = camera.lift(np.stack([columns, rows], axis=1), 1 / inverse[rows, columns].astype(np.float64))
     for n, pose in enumerate(poses):
-        seen = pose.project(points)
-        with np.errstate(invalid="ignore"):
-            inside = (seen >= 0).all(axis=1) & (seen[:, 0] <= hole.shape[1] - 1) & (seen[:, 1] <= hole.shape[0] - 1)
-        at = np.rint(np.nan_to_num(seen)).astype(int)
-        at = np.clip(at, 0, [hole.shape[1] - 1, hole.shape[0] - 1])
-        other = stack[n, at[:, 1], at[:, 0]].astype(np.float64)
-        for channel in range(3):
-            a, b = own[:, channel], other[:, channel]
-            good = inside & (hidden[n, at[:, 1], at[:, 0]] == 0) & (a > 12) & (b > 12) & (a < 245) & (b < 245)
-            if good.sum() >= 40:
-                scale[n, channel] = np.clip(np.median(a[good] / b[good]), 0.5, 2.0)
+        _brightness(own, pose.project(points), stack, hidden, n, scale)
     return scale
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _brightness(own: Any, seen: Any, stack: Any, hidden: Any, n: int, scale: Any) -> None:
+    """Median ratio of colours (k, 3) to those that frame n shows at places (k, 2), where enough of them tell."""
+    height, width = hidden.shape[1], hidden.shape[2]
+    ratios, counts = np.empty((3, len(own))), np.zeros(3, np.int64)
+    for k in range(len(own)):
+        u, v = seen[k, 0], seen[k, 1]
+        if not (u >= 0 and v >= 0 and u <= width - 1 and v <= height - 1):
+            continue
+        x, y = int(np.rint(u)), int(np.rint(v))
+        if hidden[n, y, x]:
+            continue
+        for c in range(3):
+            a, b = own[k, c], stack[n, y, x, c]
+            if a > 12 and b > 12 and a < 245 and b < 245:
+                ratios[c, counts[c]] = np.float64(a) / np.float64(b)
+                counts[c] += 1
+    for c in range(3):
+        if counts[c] >= TOLD:
+            scale[n, c] = min(max(np.median(ratios[c, : counts[c]]), 0.5), 2.0)
 
 
 @attrs.frozen(eq=False)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from threading import Lock
 from typing import Any
 
 import attrs
@@ -13,9 +14,9 @@ from imitation.cameras.path import CameraPath
 from imitation.depth.alignment import aligned
 from imitation.depth.colours import Lenders, choose_depth, gains, gather
 from imitation.depth.depthmap import DepthMap, resized, scaled_camera
-from imitation.depth.filling import extended, nearest_of, seamless, touched, voted
+from imitation.depth.filling import extended, nearest_of, painted, seamless, touched, voted
 from imitation.depth.pictures import GROWTH, Pictures
-from imitation.depth.projection import consensus, inverse_of, projected_inverse
+from imitation.depth.projection import Wanted, consensus, inverse_of, projected_inverse
 from imitation.depth.rim import between_parts, depth_along
 from imitation.depth.shadow import DARK, darkest_round, round_subject, shadow_of
 from imitation.depth.sharpness import LEAST, blurred_alike, ring_of, sharp_first, speeds
@@ -30,6 +31,7 @@ NEAREST = 8  # of them that see a place give its colour
 GROUND = 480  # pixels on the longest side at which depth under a shadow is brought over: shadows are soft
 NEARER = 3.0  # steps of the search by which a frame must see something nearer, not to be asked for what lies behind
 KEPT = 4  # depths of other frames that stay in memory
+UNSURE = -1  # in place of a least confidence: only what no other frame confirms
 
 
 @attrs.frozen(eq=False)
@@ -90,6 +92,8 @@ class Background:
         self._chosen_at, self._ground_at = self._reduced(longest), self._reduced(GROUND)
         self._last: tuple[DepthMap, ...] = ()  # depths asked for last, of no key frame: their plates ask again
         self._fronts: dict[int, NDArray[np.float32]] = {}
+        self._views: dict[tuple[int, bool, tuple[int, int]], Camera] = {}
+        self._lock = Lock()
         self._inverse: dict[tuple[int, int, tuple[int, int]], NDArray[np.float32]] = {}
         middle = float(np.nanmedian(self.maps[len(self.maps) // 2].depth))
         self._speed = speeds(cameras, range(len(cameras)), self.pictures.size, middle)
@@ -107,20 +111,18 @@ class Background:
         layers = np.stack([self._brought(each, frame, 1, self.pictures.size) for each in near])
         rank = 1 / (1 + 0.15 * np.arange(len(near)))
         inverse, support = consensus(layers, self.tolerance, rank.astype(np.float32))
-        if (inverse <= 0).any():
+        open_ = inverse <= 0
+        if open_.any():
             # Where nothing is confirmed, what the nearest key frames hold is better than nothing.
-            open_ = inverse <= 0
-            spare = np.stack([self._brought(each, frame, 0, self.pictures.size, open_) for each in near])
-            loose, _ = consensus(spare, self.tolerance, rank.astype(np.float32))
-            inverse = np.where(inverse > 0, inverse, loose)
+            asked = Wanted.of(open_)
+            spare = np.stack([self._brought(each, frame, UNSURE, self.pictures.size, asked)[open_] for each in near])
+            inverse[open_] = consensus(spare[:, None], self.tolerance, rank.astype(np.float32))[0][0]
         made = self._map(frame, inverse, support)
         self._last = (made, *self._last[: KEPT - 1])
         return made
 
     def plate(self, frame: int) -> Plate:
         """The frame without the subject, with depth everywhere."""
-        import cv2
-
         own = self.depth(frame)
         picture = self.pictures.colour(frame)
         with np.errstate(divide="ignore"):
@@ -141,9 +143,9 @@ class Background:
         ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:  # fmt: skip
             """Colours in the nearest frames that are farther away than ``least``."""
             use = [k for k, donor in enumerate(donors) if abs(donor - frame) > least] or list(range(len(donors)))
-            lent = attrs.evolve(lenders, stack=pictures)
+            theirs = attrs.evolve(lenders, stack=pictures)
             return gather(
-                rows, columns, at, self.camera(frame), lent if len(use) == len(donors) else lent.of(use), NEAREST
+                rows, columns, at, self.camera(frame), theirs if len(use) == len(donors) else theirs.of(use), NEAREST
             )
 
         colour, seen = coloured(rows, columns, found)
@@ -151,24 +153,23 @@ class Background:
         fill = picture.astype(np.float32)
         known = ~wanted
         known[rows[seen > 0], columns[seen > 0]] = True
-        painted = hole[rows, columns] & (seen > 0)
-        fill[rows[painted], columns[painted]] = colour[painted]
+        lent = hole[rows, columns] & (seen > 0)
+        fill[rows[lent], columns[lent]] = colour[lent]
         if self._speed[frame] >= LEAST * max(self.pictures.size) / 960:
             fill = blurred_alike(picture, fill, hole, known, inverse, self.pictures.cameras, frame, coloured)
         filled = np.zeros_like(hole)
-        filled[rows[painted], columns[painted]] = True
+        filled[rows[lent], columns[lent]] = True
         if self.shadows:
             shaded, bare = self._shadow(frame, picture, hole, filled, inverse, lenders.stack, coloured)
             dimmed = filled & (fill.sum(axis=-1) < DARK * bare.sum(axis=-1))
             fill[shaded | dimmed] = bare[shaded | dimmed]
             hole, filled = hole | shaded, filled | shaded
         invented = hole & ~filled
-        done: NDArray[np.uint8] = np.clip(np.rint(fill), 0, 255).astype(np.uint8)
-        if invented.any():
-            done = cv2.inpaint(done, invented.astype(np.uint8), 5, cv2.INPAINT_TELEA)
-        done = seamless(picture, done, hole)
+        done = picture.copy()
+        done[hole] = np.clip(np.rint(fill[hole]), 0, 255).astype(np.uint8)
+        done = seamless(picture, painted(done, invented), hole)
         support = np.where(hole, 0, own.confidence).astype(np.uint8)
-        support[rows[painted], columns[painted]] = np.minimum(seen[painted], 255)
+        support[rows[lent], columns[lent]] = np.minimum(seen[lent], 255)
         inverse = self._carried_on(inverse, invented, self._chosen_at)
         depth = attrs.evolve(self._map(frame, inverse, support), invented=invented)
         return Plate(frame, done, depth, filled, invented)
@@ -184,7 +185,8 @@ class Background:
         if not weak.any():
             return own
         small = touched(weak, self._ground_at)
-        layers = np.stack([self._brought(each, frame, 1, self._ground_at, small) for each in self._spread(frame)])
+        asked = Wanted.of(small)
+        layers = np.stack([self._brought(each, frame, 1, self._ground_at, asked) for each in self._spread(frame)])
         brought, votes = consensus(layers, self.tolerance)
         found, votes = self._enlarged(brought), nearest_of(votes, self.pictures.size)
         with np.errstate(divide="ignore"):
@@ -222,7 +224,8 @@ class Background:
             wanted[top:bottom, left:right] = True
         own = [each for each in self.maps if each.frame == frame]
         sources = own + [each for each in self._spread(frame) if each.frame != frame]
-        layers = np.stack([self._brought(each, frame, 1, size, wanted) for each in sources])
+        asked = Wanted.of(wanted)
+        layers = np.stack([self._brought(each, frame, 1, size, asked) for each in sources])
         found = self._map(frame, *consensus(layers, self.tolerance))
         return found.place(spot, radius=reach)
 
@@ -236,18 +239,20 @@ class Background:
         frame: int,
         least: int,
         size: tuple[int, int],
-        wanted: NDArray[np.bool_] | None = None,
+        wanted: Wanted | None = None,
     ) -> NDArray[np.float32]:
         """Inverse depth (h, w) that a key frame gives to another frame's wanted pixels, at a size (width, height)."""
         inverse = self._known(source, least, size)
-        seen, wanting = self._resized_view(source.camera, size), self._resized_view(self.camera(frame), size)
-        return projected_inverse(inverse, seen, wanting, size, wanted)
+        return projected_inverse(inverse, self._view(source, size), self._view(frame, size), size, wanted)
 
     def _known(self, source: DepthMap, least: int, size: tuple[int, int]) -> NDArray[np.float32]:
         """Inverse depth of a key frame, 0 where it has none of this confidence, at a size; kept."""
         key = source.frame, least, size
         if key not in self._inverse:
-            self._inverse[key] = resized(inverse_of(source, least), size, 2 * self.tolerance)
+            inverse = inverse_of(source, max(least, 0))
+            if least == UNSURE:
+                inverse[source.confidence > 0] = 0
+            self._inverse[key] = resized(inverse, size, 2 * self.tolerance)
         return self._inverse[key]
 
     def _reduced(self, longest: int | None) -> tuple[int, int]:
@@ -255,9 +260,16 @@ class Background:
         share = min(1.0, (longest or max(width, height)) / max(width, height))
         return round(share * width), round(share * height)
 
-    def _resized_view(self, camera: Camera, size: tuple[int, int]) -> Camera:
-        full = self.pictures.size
-        return camera if size == full else scaled_camera(camera, (size[0] / full[0], size[1] / full[1]))
+    def _view(self, seen: DepthMap | int, size: tuple[int, int]) -> Camera:
+        """The camera of a key frame's map, or of a frame, for pictures of a size; kept."""
+        key = (seen.frame, True, size) if isinstance(seen, DepthMap) else (seen, False, size)
+        view = self._views.get(key)
+        if view is None:
+            view, full = seen.camera if isinstance(seen, DepthMap) else self.camera(seen), self.pictures.size
+            if size != full:
+                view = scaled_camera(view, (size[0] / full[0], size[1] / full[1]))
+            self._views[key] = view
+        return view
 
     def _enlarged(self, inverse: NDArray[np.float32]) -> NDArray[np.float32]:
         """Reduced inverse depths at the size of the frames, edges kept."""
@@ -305,16 +317,20 @@ class Background:
 
     def _front(self, frame: int) -> NDArray[np.float32]:
         """Inverse depth of what a frame sees, 0 where not known, at a reduced size; kept."""
-        if frame not in self._fronts:
+        front = self._fronts.get(frame)
+        if front is None:
             near, size = self._nearest(frame, 4), self._ground_at
             own = [each for each in near if each.frame == frame]
             layers = [self._known(each, 1, size) for each in own] or [
                 self._brought(each, frame, 1, size) for each in near
             ]
-            while len(self._fronts) >= 3 * DONORS:
-                del self._fronts[next(iter(self._fronts))]
-            self._fronts[frame] = layers[0] if own else consensus(np.stack(layers), self.tolerance)[0]
-        return self._fronts[frame]
+            front = layers[0] if own else consensus(np.stack(layers), self.tolerance)[0]
+            with self._lock:
+                # Films are made by several threads.
+                while len(self._fronts) >= 3 * DONORS:
+                    del self._fronts[next(iter(self._fronts))]
+                self._fronts[frame] = front
+        return front
 
     def _hole(
         self, frame: int, picture: NDArray[np.uint8], inverse: NDArray[np.float32]
@@ -349,14 +365,15 @@ class Background:
         sources, size = self._spread(frame), self._chosen_at
         small = touched(wanted, size)
         rows, columns = np.nonzero(small)
+        asked = Wanted.of(small)
         loose, firm = (
-            np.stack([self._brought(each, frame, least, size, small)[rows, columns] for each in sources], axis=1)
+            np.stack([self._brought(each, frame, least, size, asked)[rows, columns] for each in sources], axis=1)
             for least in (0, 3)
         )
         known = np.stack([self._known(each, 1, size) for each in sources])
-        knowing = [self._resized_view(each.camera, size) for each in sources]
+        knowing = [self._view(each, size) for each in sources]
         inverse = choose_depth(
-            rows, columns, loose, firm, self._resized_view(self.camera(frame), size), lenders, self.tolerance, known,
+            rows, columns, loose, firm, self._view(frame, size), lenders, self.tolerance, known,
             knowing,
         )  # fmt: skip
         found = np.zeros(size[::-1], np.float32)

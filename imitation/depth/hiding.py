@@ -12,6 +12,7 @@ ALIKE = 24.0
 """Levels, the worst channel, up to which a frame shows what its plate says that the background looks like."""
 STRAYS = 3.0
 SMOOTH = 1.0  # pixels: single noisy pixels do not decide
+MARGIN = 8  # pixels: from farther away smoothing takes nothing
 
 
 def shown_background(picture: NDArray[np.uint8], plate: Plate) -> NDArray[np.bool_]:
@@ -23,10 +24,16 @@ def shown_background(picture: NDArray[np.uint8], plate: Plate) -> NDArray[np.boo
 
     if picture.shape != plate.picture.shape:
         raise InputError(f"The frame is {picture.shape[:2]}, but its plate is {plate.picture.shape[:2]}.")
-    hole = plate.filled | plate.invented
-    smooth = [cv2.GaussianBlur(each, (0, 0), SMOOTH).astype(np.float32) for each in (picture, plate.picture)]
-    alike = np.abs(smooth[0] - smooth[1]).max(axis=-1) < ALIKE
-    shown: NDArray[np.bool_] = ~hole | (plate.filled & alike)
+    shown: NDArray[np.bool_] = ~(plate.filled | plate.invented)
+    rows, columns = np.flatnonzero(plate.filled.any(axis=1)), np.flatnonzero(plate.filled.any(axis=0))
+    if not len(rows):
+        return shown
+    # Colours have a say in what was filled only.
+    box = tuple(slice(max(0, int(side[0]) - MARGIN), int(side[-1]) + MARGIN + 1) for side in (rows, columns))
+    ours, theirs = (cv2.GaussianBlur(each[box], (0, 0), SMOOTH).astype(np.float32) for each in (picture, plate.picture))
+    apart = np.abs(ours - theirs)
+    alike = np.maximum(np.maximum(apart[..., 0], apart[..., 1]), apart[..., 2]) < ALIKE
+    shown[box] |= plate.filled[box] & alike
     return shown
 
 

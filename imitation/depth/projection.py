@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import attrs
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from imitation.depth.depthmap import DepthMap
-from imitation.depth.sweep import geometry
 from imitation.geometry.projection import Camera
 
 FRONT = 0.03  # relative depth within which splats belong to one surface
@@ -35,7 +35,8 @@ def projected(
     least : confidence that a pixel of the map needs to count.
     wanted : (h, w) the pixels that are needed: only these are right, which is quicker.
     """
-    return projected_inverse(inverse_of(source, least), source.camera, camera, size, wanted)
+    asked = None if wanted is None else Wanted.of(wanted)
+    return projected_inverse(inverse_of(source, least), source.camera, camera, size, asked)
 
 
 def inverse_of(source: DepthMap, least: int = 0) -> NDArray[np.float32]:
@@ -46,59 +47,71 @@ def inverse_of(source: DepthMap, least: int = 0) -> NDArray[np.float32]:
     return inverse
 
 
+@attrs.frozen(eq=False)
+class Wanted:
+    """Pixels of a picture that are needed of projections, made ready once for several maps.
+
+    Attributes
+    ----------
+    pixels : bool (h, w). box : first row and column that hold one, and those after the last.
+    tiles : bool, which tiles of the picture hold one. touched : bool, of the box (h + 1, w + 1), which fours of pixels
+        do, by their lower right one.
+    """
+
+    pixels: NDArray[np.bool_]
+    box: tuple[int, int, int, int]
+    tiles: NDArray[np.bool_]
+    touched: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, pixels: NDArray[np.bool_]) -> Wanted:
+        """Of a picture (h, w)."""
+        rows, columns = np.flatnonzero(pixels.any(axis=1)), np.flatnonzero(pixels.any(axis=0))
+        if not len(rows):
+            return cls(pixels, (0, 0, 0, 0), np.zeros((1, 1), np.bool_), np.zeros((1, 1), np.bool_))
+        top, left, bottom, right = int(rows[0]), int(columns[0]), int(rows[-1]) + 1, int(columns[-1]) + 1
+        down = np.logical_or.reduceat(pixels, np.arange(0, pixels.shape[0], TILE), axis=0)
+        tiles = np.logical_or.reduceat(down, np.arange(0, pixels.shape[1], TILE), axis=1)
+        padded = np.zeros((bottom - top + 2, right - left + 2), np.bool_)
+        padded[1:-1, 1:-1] = pixels[top:bottom, left:right]
+        either = padded[1:] | padded[:-1]
+        return cls(pixels, (top, left, bottom, right), tiles, either[:, 1:] | either[:, :-1])
+
+
 def projected_inverse(
     inverse: NDArray[np.float32],
     source: Camera,
     camera: Camera,
     size: tuple[int, int],
-    wanted: NDArray[np.bool_] | None = None,
+    wanted: Wanted | None = None,
 ) -> NDArray[np.float32]:
     """The same for inverse depths (h, w), 0 where none, that a camera ``source`` sees."""
-    maps = geometry((source.K, source.R, source.T), [(camera.K, camera.R, camera.T)])
     made = np.zeros(size[::-1], np.float32)
-    box = (0, 0, size[1], size[0]) if wanted is None else _box(wanted)
-    if box is None:
+    top, left, bottom, right = (0, 0, size[1], size[0]) if wanted is None else wanted.box
+    if bottom <= top:
         return made
-    top, left, bottom, right = box
-    tiles = touched = np.ones((1, 1), np.bool_)
-    if wanted is not None:
-        tiles, touched = _marked(wanted, box)
+    A, b = _between(source, camera)
     # A border of a pixel takes what falls beside the picture.
     shape = bottom - top + 2, right - left + 2
     front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
     useful = np.ones((inverse.shape[0], -(-inverse.shape[1] // TILE)), np.bool_)
+    touched, tiles = (useful, useful) if wanted is None else (wanted.touched, wanted.tiles)
     for collect in (False, True):
         _splat(
-            inverse, maps.A[0], maps.b[0], top, left, front, total, weight, collect, touched, tiles,
-            wanted is not None, useful,
+            inverse, A, b, top, left, front, total, weight, collect, touched, tiles, wanted is not None, useful
         )  # fmt: skip
     part = slice(top, bottom), slice(left, right)
     total, weight = total[1:-1, 1:-1], weight[1:-1, 1:-1]
-    there = weight > 0 if wanted is None else wanted[part] & (weight > 0)
+    there = weight > 0 if wanted is None else wanted.pixels[part] & (weight > 0)
     np.divide(total, weight, out=made[part], where=there)
     return made
 
 
-def _box(wanted: NDArray[np.bool_]) -> tuple[int, int, int, int] | None:
-    """First row and column and those after the last that hold a wanted pixel; None where there is none."""
-    rows, columns = np.flatnonzero(wanted.any(axis=1)), np.flatnonzero(wanted.any(axis=0))
-    if not len(rows):
-        return None
-    return int(rows[0]), int(columns[0]), int(rows[-1]) + 1, int(columns[-1]) + 1
-
-
-def _marked(wanted: NDArray[np.bool_], box: tuple[int, int, int, int]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Tiles of a picture that hold a wanted pixel, and fours of pixels of a box (h + 1, w + 1), by the lower right."""
-    top, left, bottom, right = box
-    high, wide = (-(-side // TILE) for side in wanted.shape)
-    padded = np.zeros((high * TILE, wide * TILE), np.bool_)
-    padded[: wanted.shape[0], : wanted.shape[1]] = wanted
-    tiles = np.asarray(padded.reshape(high, TILE, wide, TILE).any(axis=(1, 3)))
-    touched = np.zeros((bottom - top + 1, right - left + 1), np.bool_)
-    for down in (slice(None, -1), slice(1, None)):
-        for across in (slice(None, -1), slice(1, None)):
-            touched[down, across] |= wanted[top:bottom, left:right]
-    return tiles, touched
+def _between(source: Camera, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Where a camera sees another's pixels: ``(u, v) ~ A (x, y, 1) + w b`` for inverse depth w; see ``Geometry``."""
+    turn = camera.R @ source.R.T
+    A, b = camera.K @ turn @ np.linalg.inv(source.K), camera.K @ (camera.T - turn @ source.T)
+    return np.ascontiguousarray(A, np.float32), np.ascontiguousarray(b, np.float32)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from imitation.depth.agreement import agreeing
-from imitation.depth.projection import FRONT, consensus, projected_inverse
+from imitation.depth.projection import FRONT, Wanted, consensus, projected_inverse
 from imitation.depth.semiglobal import FINE, LARGE, LEAST, SMALL, SOFTENING, semiglobal
 from imitation.depth.sweep import (
     FLOOR,
@@ -198,7 +198,7 @@ def test_projection_against_plain_code(ahead: float) -> None:
     np.testing.assert_array_equal(projected_inverse(inverse, here, there, size), expected)
     wanted = random.random(expected.shape) < 0.05
     wanted[:, 0] = wanted[-1] = True
-    part = projected_inverse(inverse, here, there, size, wanted)
+    part = projected_inverse(inverse, here, there, size, Wanted.of(wanted))
     np.testing.assert_array_equal(part, np.where(wanted, expected, 0))
 
 
