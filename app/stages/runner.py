@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, InvalidStateError, ThreadPoolExecutor, wait
 from pathlib import Path
@@ -22,7 +23,9 @@ from imitation.errors import Cancelled, InputError
 from imitation.progress import Progress
 
 LOOK = 0.05
-"""Seconds after which a job looks again for results that others have put there; a cancel wakes it at once."""
+"""Seconds after which a job asks whether others have put results there; a cancel wakes it at once."""
+PATIENCE = 1.0
+"""Seconds after which it looks for them all the same: another process may have put them into the folder."""
 StageState = Literal["fresh", "stale", "running", "failed", "blocked", "missing"]
 
 
@@ -154,10 +157,16 @@ class Runner:
         pending: dict[Future[Any], Stage] = {}
         stop: Future[None] = Future()
         job.token.wakes(lambda: _settled(stop))
+        seen, looked = -1, 0.0
         try:
             while wanted or pending:
                 job.token.check()
-                ready = [stage for stage in wanted if all(need in self.cache for need in stage.needs)]
+                ready: list[Stage] = []
+                if seen != self.cache.turns or time.monotonic() - looked >= PATIENCE:
+                    # Each look asks the disk for all that the waiting stages need. Counted first: what is put in
+                    # meanwhile is looked for again.
+                    seen, looked = self.cache.turns, time.monotonic()
+                    ready = [stage for stage in wanted if all(need in self.cache for need in stage.needs)]
                 for stage in ready:
                     wanted.remove(stage)
                     pending[self._submit(job, stage)] = stage

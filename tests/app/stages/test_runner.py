@@ -204,6 +204,44 @@ def test_a_job_that_leaves_takes_nothing_off_the_queue_that_another_waits_for(tm
         runner.close()
 
 
+def test_a_job_that_waits_leaves_the_disk_alone(runner: Runner, monkeypatch: pytest.MonkeyPatch) -> None:
+    """While nothing is put in, what forty stages wait for is not asked for twenty times a second."""
+    asked: list[str] = []
+    there = ResultStore.__contains__
+    monkeypatch.setattr(ResultStore, "__contains__", lambda self, key: asked.append(key) or there(self, key))
+    long = Stage("long", "Long", slow, (0.8,))
+    job = runner.start("all", tuple(Stage(f"of {k}", "Of", after, (k,), (long,)) for k in range(40)))
+    assert job.wait(20)
+    assert job.state == "done"
+    assert asked.count(long.key) < 4 * 40
+
+
+def after(context: Context, inputs: tuple[int], *needs: Any) -> int:
+    """Give a number, whatever is needed for it."""
+    return inputs[0]
+
+
+def test_a_result_that_another_process_put_into_the_folder_is_found(tmp_path: Path) -> None:
+    """A stage begins when what it needs lies in the folder, though this process is still at work on that."""
+    store = ResultStore(tmp_path / "results")
+    GATE.clear()
+    runner = Runner(ResultCache(store), Media(lambda ref: tmp_path), ThreadPoolExecutor(2))
+    try:
+        first = Stage("gated", "Gated", gated, (30.0,))
+        second = Stage("after", "After", after, (7,), (first,))
+        job = runner.start("both", (second,))
+        time.sleep(0.3)
+        ResultStore(tmp_path / "results").save(first.key, "elsewhere", first.name)
+        end = time.monotonic() + 10
+        while second not in runner.cache and time.monotonic() < end:
+            time.sleep(0.02)
+        assert second in runner.cache
+        assert job.state == "running"
+    finally:
+        GATE.set()
+        runner.close()
+
+
 def test_partial_results_stream(runner: Runner) -> None:
     """Parts come in order before the whole, progress ends at 1."""
     heard: list[Any] = []
