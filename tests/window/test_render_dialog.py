@@ -157,9 +157,7 @@ def test_a_film_is_written_in_the_background(measured: Shell, tmp_path: Path) ->
     range_of(dialog, 2, 9)
     target = tmp_path / "out.mp4"
     line = dialog.film.target
-    type_into(line.path, str(target))
-    if line.job is None:
-        QTest.mouseClick(line.write, LEFT)
+    type_into(line.path, str(target))  # ends with Enter, which writes
     assert line.progress.isVisible()
     assert not line.write.isVisible()
     wait_for(lambda: measured.bar.job.isVisible())
@@ -207,6 +205,21 @@ def test_a_film_goes_on_when_the_dialog_is_closed(measured: Shell, tmp_path: Pat
     settle()
     assert (tmp_path / "out.mp4").stat().st_size > 1000
     assert measured.video.errors.sentence.text() == "out.mp4 is written."
+
+
+def test_enter_in_a_number_presses_no_button(measured: Shell, tmp_path: Path) -> None:
+    """It neither starts a film nor stops the one that is written, whichever button had the focus before."""
+    dialog = opened(measured)
+    made(dialog)
+    line = dialog.film.target
+    assert line.write.hasFocus()
+    QTest.keyClick(dialog.film.options.first, Qt.Key.Key_Return)
+    assert line.job is None
+    line.path.setText(str(tmp_path / "out.mp4"))
+    QTest.mouseClick(line.write, LEFT)
+    type_into(dialog.film.preview.frame, "5")
+    assert measured.project.frame == 5
+    assert done(dialog) == "out.mp4 is written."
 
 
 def test_closing_the_window_ends_the_rendering(measured: Shell, tmp_path: Path) -> None:

@@ -84,6 +84,8 @@ def button(text: str, call: Callable[[], object], *, primary: bool = False, name
         made.setIcon(icons.icon(name, "on_accent" if primary else "text", "text"))
         made.setIconSize(QSize(16, 16))
     made.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+    # Else a dialog takes some button for its default, and Enter in any field presses it.
+    made.setAutoDefault(False)
     PressKeys(made)
     made.clicked.connect(lambda: call())
     return made

@@ -8,6 +8,8 @@ from PySide6.QtCore import QEvent, QPointF, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QFocusEvent, QKeyEvent, QMouseEvent
 from PySide6.QtWidgets import QLineEdit, QMenu, QWidget
 
+from app.window.controls.own_keys import ENTER
+
 DRAG_SLACK = 3.0
 
 
@@ -180,6 +182,9 @@ class NumberField(QLineEdit):
             self.changed.emit(self._value)
         else:
             super().keyPressEvent(event)
+            if key in ENTER:
+                # It takes the number, and is not handed on to a button of the dialog.
+                event.accept()
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
         """Take what was typed when the field is left."""

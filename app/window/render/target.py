@@ -46,6 +46,7 @@ class TargetLine(QWidget):
         self.share.setFixedWidth(40)
         self.write = button(verb, self.wanted.emit, primary=True, name=icon)
         self.cancel = button("Cancel", self._cancel, name="cancel")
+        self.path.returnPressed.connect(self.write.click)
         self.caption = label("To", "label")
         row.addWidget(self.caption)
         for widget, stretch in ((self.path, 1), (self.browse, 0), (self.progress, 1), (self.share, 0)):
