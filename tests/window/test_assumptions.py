@@ -196,13 +196,18 @@ def test_c_in_hand_marks_the_chosen_point_in_this_frame(shell: Shell) -> None:
 def test_drawn_masks_are_carried_when_nobody_draws_any_more(shell: Shell) -> None:
     """Two lassos in a row start one job, after a pause; without masks there is nothing to carry."""
     project, keeper = shell.project, shell.opened.keeper
-    keeper._idle.setInterval(300)
+    keeper._idle.setTimerType(Qt.TimerType.PreciseTimer)
+    keeper._idle.setInterval(60_000)
     square = [(60.0, 40.0), (140.0, 40.0), (140.0, 100.0), (60.0, 100.0)]
     project.edit(scene.add_lasso, 0, square)
     settle(150)
+    left = keeper._idle.remainingTime()
+    assert 0 < left < 60_000
     project.edit(scene.add_lasso, 10, square)
+    assert keeper._idle.remainingTime() > left, "every stroke puts it off"
     labels = {job.label for job in project.progress}
     assert "Carrying the masks" not in labels, "it waits for the last stroke"
+    keeper._idle.start(300)
     wait_for(lambda: project.state(project.session.stages.masks) == "fresh", 60)
     wait_for(lambda: not project.progress, 60)
     assert len(project.result(project.session.stages.masks).bits) == project.frame_count
