@@ -63,7 +63,8 @@ class ResultCache:
             except InputError as error:
                 self.storing_failed = str(error)
         self._hold(stage.key, value)
-        self.turns += 1
+        with self._lock:
+            self.turns += 1
 
     def empty(self) -> None:
         """Give up what is held in memory; what is on the disk stays."""
