@@ -135,7 +135,7 @@ REFUSED = [
     (["set", "{project}", "--click", "nose", "900", "1", "1"], BAD_INPUT, "outside the clip"),
     (["set", "{project}", "--click", "nose", "3", "nan", "1"], BAD_INPUT, "two finite numbers"),
     (["set", "{project}", "--contact", "fin", "1", "2"], BAD_INPUT, "no track called fin"),
-    (["set", "{project}", "--pair", "subject", "nose", "99999"], DONE, ""),
+    (["set", "{project}", "--pair", "subject", "nose", "99999"], BAD_INPUT, "has no vertex 99999"),
     (["export", "{project}", "{tmp}/out.xyz"], BAD_INPUT, "no known form"),
     (["compare", "{project}", "{tmp}/out.mp4"], BAD_INPUT, "edited frame"),
     (["render", "{project}"], USAGE, "Missing argument"),
