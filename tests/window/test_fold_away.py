@@ -106,6 +106,7 @@ def test_a_small_screen_has_room_for_the_window(shell: Shell) -> None:
         shell.resize(1024, 700)
         wait_for(lambda page=page: page != "character" or shell.character.mesh.viewport is not None)
         settle(300)
+        wait_for(lambda: shell.at_rest)
         assert (shell.width(), shell.height()) == (1024, 700), page
         assert_nothing_clipped(shell)
     QTest.keyClick(shell, Qt.Key.Key_F1)
