@@ -100,11 +100,16 @@ def end_as_interrupted() -> None:
         return  # Windows has no such request
     main_thread = threading.main_thread().ident
     assert main_thread is not None
+    interrupt = signal.SIGINT
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        # Begun in the background of a script, where Ctrl+C is meant for others.
+        interrupt = signal.SIGUSR1
+        signal.signal(interrupt, signal.default_int_handler)
     signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGTERM})
 
     def wait() -> None:
         signal.sigwait({signal.SIGTERM})
-        signal.pthread_kill(main_thread, signal.SIGINT)
+        signal.pthread_kill(main_thread, interrupt)
 
     threading.Thread(target=wait, name="end", daemon=True).start()
 

@@ -95,10 +95,22 @@ def test_missing_media_are_named_and_found(tmp_path: Path, capsys: pytest.Captur
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
-@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
-def test_a_demonstration_that_is_stopped_goes_on(sent: signal.Signals, tmp_path: Path) -> None:
-    """Both its strands end with one sentence, whoever asks; killed or not, the project is whole."""
-    program = [sys.executable, "-m", "app.commands.main"]
+@pytest.mark.parametrize(
+    ("sent", "begun"),
+    [
+        (signal.SIGINT, "default_int_handler"),
+        (signal.SIGTERM, "default_int_handler"),
+        (signal.SIGTERM, "SIG_IGN"),
+        (signal.SIGKILL, "default_int_handler"),
+    ],
+)
+def test_a_demonstration_that_is_stopped_goes_on(sent: signal.Signals, begun: str, tmp_path: Path) -> None:
+    """Both its strands end with one sentence, whoever asks; killed or not, the project is whole.
+
+    In the background of a script a program begins with Ctrl+C ignored, but is to end when it is asked to.
+    """
+    begin = f"import signal; signal.signal(signal.SIGINT, signal.{begun}); from app.commands.main import main; main()"
+    program = [sys.executable, "-c", begin]
     with subprocess.Popen([*program, "demo", str(tmp_path)], stderr=subprocess.PIPE, text=True) as running:
         try:
             assert running.stderr is not None
