@@ -82,7 +82,7 @@ def sketch(document: Document, slot: str, turn: str) -> Stage:
     if turn == "second":
         needs += _sketches(document, "first")
     compute = _first if turn == "first" else _second
-    return Stage(name, LABEL, compute, (clip, WIDTH, int(slot)), needs, version=3, weight=KEY_SECONDS / 2)
+    return Stage(name, LABEL, compute, (clip, WIDTH, int(slot)), needs, version=4, weight=KEY_SECONDS / 2)
 
 
 @once

@@ -19,13 +19,16 @@ from imitation.depth.pictures import LONGEST, Pictures
 from imitation.depth.plain import plain_surfaces, with_planes
 from imitation.depth.projection import consensus, projected_inverse
 from imitation.depth.semiglobal import semiglobal
+from imitation.depth.spans import likely_planes
 from imitation.depth.sweep import NEUTRAL, geometry, sweep
 from imitation.depth.views import choose_views, key_frames
 from imitation.errors import InputError
 from imitation.progress import Progress, part, silent
 
 PLANES, PLANES_LARGE = 144, 160
+COARSE = 2 / 3  # of the planes, in the first pass, which only leads the second
 AVERAGED = 8  # other maps, the nearest in time, that a map is averaged with where they agree
+FILLING = 6  # the same that fill in what no view shows
 LEADERS = 10  # other maps, the nearest in time, that lead the second pass
 STRAYED = 3.0  # steps of the search off the plane of a plain surface that the second pass does not believe
 LARGE = 700  # pixels on the longest side from which there are more planes
@@ -86,10 +89,10 @@ class DepthSolver:
         self._count = count
         self.sigma = 1.0 * max(1.0, max(self.pictures.size) / 480)
 
-    def planes(self, frame: int) -> NDArray[np.float32]:
-        """Inverse depths that are tried in a frame, evenly spaced over what is seen near it."""
+    def planes(self, frame: int, share: float = 1.0) -> NDArray[np.float32]:
+        """Inverse depths that are tried in a frame, evenly spaced over what is seen near it; or a share of them."""
         reach = range_near(self.pictures.cameras, frame, self.reach)
-        return np.linspace(1 / reach.far, 1 / reach.near, self._count).astype(np.float32)
+        return np.linspace(1 / reach.far, 1 / reach.near, round(share * self._count)).astype(np.float32)
 
     def key_frames(self) -> list[int]:
         """Frames whose depth serves all others."""
@@ -101,12 +104,12 @@ class DepthSolver:
         return choose_views(self.pictures.cameras, frame, set(keys), self.pictures.full, middle)
 
     def first(self, frame: int, keys: Sequence[int], progress: Progress = silent) -> Sketch:
-        """Depth from the pictures alone."""
-        return self._pass(frame, keys, {}, progress)
+        """Depth from the pictures alone; coarse where there are other frames that a second pass can learn from."""
+        return self._pass(frame, keys, {}, COARSE if set(keys) - {frame} else 1.0, progress)
 
     def second(self, frame: int, sketches: Mapping[int, Sketch], progress: Progress = silent) -> Sketch:
         """Depth from the pictures and from what the first pass found in the other frames."""
-        return self._pass(frame, list(sketches), {f: s for f, s in sketches.items() if f != frame}, progress)
+        return self._pass(frame, list(sketches), sketches, 1.0, progress)
 
     def finish(self, frame: int, sketches: Mapping[int, Sketch]) -> DepthMap:
         """The depth map of a frame, with the number of the others that agree, at the size of the frames."""
@@ -141,18 +144,22 @@ class DepthSolver:
             [pictures.camera(v) for v in views],
         )  # fmt: skip
 
+    def _layers(self, frame: int, others: Sequence[Sketch], most: int) -> NDArray[np.float32]:
+        """What the maps nearest in time bring to a frame: inverse depths (k, h, w), 0 where none."""
+        pictures = self.pictures
+        near = sorted(others, key=lambda each: (abs(each.frame - frame), each.frame))[:most]
+        return np.stack([
+            projected_inverse(each.measured, pictures.camera(each.frame), pictures.camera(frame), pictures.size)
+            for each in near
+        ])  # fmt: skip
+
     def _averaged(self, inverse: NDArray[np.float32], sketch: Sketch, others: Sequence[Sketch]) -> NDArray[np.float32]:
         """The mean of a map and of what agrees with it in the maps nearest in time.
 
         What disagrees does not vote: brought from another frame, near surfaces reach over their edges.
         """
-        pictures = self.pictures
-        near = sorted(others, key=lambda each: (abs(each.frame - sketch.frame), each.frame))[:AVERAGED]
         total, number = inverse.copy(), np.ones_like(inverse)
-        for each in near:
-            layer = projected_inverse(
-                each.measured, pictures.camera(each.frame), pictures.camera(sketch.frame), pictures.size
-            )
+        for layer in self._layers(sketch.frame, others, AVERAGED) if others else ():
             same = (layer > 0) & (np.abs(layer - inverse) <= 1.5 * sketch.step)
             total[same] += layer[same]
             number[same] += 1
@@ -162,19 +169,16 @@ class DepthSolver:
         self, sketch: Sketch, count: NDArray[np.uint8], others: Sequence[Sketch]
     ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """What no view shows, such as the edge of the first picture, from the other maps, where these know it."""
-        near = sorted(others, key=lambda each: (abs(each.frame - sketch.frame), each.frame))[:6]
-        if sketch.seen.all() or not near:
+        if sketch.seen.all() or not others:
             return sketch.inverse, count
-        pictures = self.pictures
-        layers = np.stack([
-            projected_inverse(each.measured, pictures.camera(each.frame), pictures.camera(sketch.frame), pictures.size)
-            for each in near
-        ])  # fmt: skip
-        brought, support = consensus(layers, 1.5 * sketch.step)
+        brought, support = consensus(self._layers(sketch.frame, others, FILLING), 1.5 * sketch.step)
         lent = ~sketch.seen & (brought > 0)
         return np.where(lent, brought, sketch.inverse), np.where(lent, support, count).astype(np.uint8)
 
-    def _pass(self, frame: int, keys: Sequence[int], known: Mapping[int, Sketch], progress: Progress) -> Sketch:
+    def _pass(
+        self, frame: int, keys: Sequence[int], sketches: Mapping[int, Sketch], share: float, progress: Progress
+    ) -> Sketch:
+        """One pass with a share of the planes, led by what is known of all frames, where there is anything."""
         import cv2
 
         progress(0.0)
@@ -185,31 +189,33 @@ class DepthSolver:
             camera = pictures.camera(t)
             return camera.K, camera.R, camera.T
 
-        prior = None
-        if known:
-            nothing = np.zeros(pictures.size[::-1], np.float32)
-            prior = np.stack([known[v].measured if v in known else nothing for v in views])
-        planes, signals = self.planes(frame), []
+        planes, signals = self.planes(frame, share), []
         for view in views:
             progress(0.0)  # reading a frame takes a moment: a pass that is no longer wanted ends between two
             signals.append(pictures.signal(view))
+        others = [each for each in sketches.values() if each.frame != frame]
+        prior = spans = None
+        if others:
+            nothing = np.zeros(pictures.size[::-1], np.float32)
+            prior = np.stack([sketches[v].measured if v in sketches else nothing for v in views])
+            layers = self._layers(frame, others, LEADERS)
+            own = [sketches[frame].measured] if frame in sketches else []
+            spans = likely_planes(np.stack([*layers, *own]), planes) if own else None
+            progress(0.01)
         volume = sweep(
             pictures.signal(frame), pictures.hidden(frame), np.stack(signals),
-            geometry(pose(frame), [pose(v) for v in views]), planes, prior, self.sigma, part(progress, 0.0, 0.75),
+            geometry(pose(frame), [pose(v) for v in views]), planes, prior, self.sigma, spans,
+            part(progress, 0.02, 0.75),
         )  # fmt: skip
         untold = volume == NEUTRAL
-        if known:
-            camera, size = pictures.camera(frame), pictures.size
-            others = sorted(known.values(), key=lambda each: (abs(each.frame - frame), each.frame))[:LEADERS]
-            layers = [projected_inverse(o.measured, pictures.camera(o.frame), camera, size) for o in others]
-            progress(0.76)
-            lead(volume, np.stack(layers), planes, 1.0)
+        if others:
+            lead(volume, layers, planes, 1.0)
         picture, hidden = pictures.shown(frame), pictures.hidden(frame)
         calm = cv2.medianBlur(picture, 3)  # single noisy pixels are no edges
         calm[hidden > 0] = 128
         plane = semiglobal(volume, calm, progress=part(progress, 0.78, 0.97))
         # Led by the other maps, single pixels know more than a plane of this frame alone, unless they are far off it.
-        plane = with_planes(plane, volume, picture, hidden, STRAYED if known else 0.0)
+        plane = with_planes(plane, volume, picture, hidden, STRAYED if others else 0.0)
         step = float(planes[1] - planes[0])
         chosen = np.rint(plane).astype(np.int64)[..., None]
         seen = ~np.take_along_axis(untold, chosen, axis=2)[..., 0]

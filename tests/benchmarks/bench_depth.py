@@ -15,6 +15,7 @@ import pytest
 from imitation import CameraPath
 from imitation.cameras import solve_cameras
 from imitation.depth import Background, DepthMap, DepthSolver, background_mesh, joined_mesh
+from imitation.depth.solve import COARSE
 from tests.benchmarks.held_out import meeting_angles, neighbours, own_errors
 from tests.benchmarks.record import Recorder
 from tests.imitation.depth.scenes import HARD, World, distance_to, filmed_room, ray_cast
@@ -27,11 +28,11 @@ KEYS, SCORED = list(range(0, 40, 4)), (8, 20, 32)
 
 @attrs.frozen(eq=False)
 class Run:
-    """A solved room: both passes, the maps, CPU seconds a key frame."""
+    """A solved room: without a prior, with it, the maps, CPU seconds a key frame of both passes."""
 
     world: World
     solver: DepthSolver
-    first: dict[int, Any]
+    plain: dict[int, Any]
     second: dict[int, Any]
     maps: dict[int, DepthMap]
     seconds: float
@@ -45,7 +46,17 @@ def run(world: World, cameras: CameraPath | None = None, keys: list[int] | None 
     first = {t: solver.first(t, chosen) for t in chosen}
     second = {t: solver.second(t, first) for t in chosen}
     maps = {t: solver.finish(t, second) for t in chosen}
-    return Run(world, solver, first, second, maps, (time.process_time() - start) / len(chosen))
+    seconds = (time.process_time() - start) / len(chosen)
+    return Run(world, solver, without_prior(solver, chosen), second, maps, seconds)
+
+
+def without_prior(solver: DepthSolver, keys: list[int]) -> dict[int, Any]:
+    """A pass with the planes and the views of the second, but nothing to lead it: the first alone is coarser."""
+    pictures, count = solver.pictures, round(len(solver.planes(keys[0])) / COARSE)
+    finer = DepthSolver(
+        pictures.frames, pictures.cameras, pictures.masks, longest=max(pictures.size), reach=solver.reach, planes=count
+    )
+    return {t: finer.first(t, keys) for t in keys}
 
 
 @functools.lru_cache(maxsize=2)
@@ -115,7 +126,7 @@ def test_depth_with_exact_cameras(bench: Recorder) -> None:
     """480 x 270, every pixel off the subject, three frames of two rooms."""
     rooms = [room(seed) for seed in SEEDS]
     ours = np.concatenate([errors(r.maps[t].depth, r, t) for r in rooms for t in SCORED])
-    plain = np.concatenate([errors(1 / r.first[t].inverse, r, t) for r in rooms for t in SCORED])
+    plain = np.concatenate([errors(1 / r.plain[t].inverse, r, t) for r in rooms for t in SCORED])
     pair = np.concatenate([errors(sgbm(r.world, t), r, t) for r in rooms for t in SCORED])
     known = np.isfinite(pair)
     note = (
@@ -162,7 +173,7 @@ def test_depth_with_slightly_wrong_cameras(bench: Recorder) -> None:
     for pixels, asked in ((0.27, 86), (0.38, None)):
         each = run(world, shaken(world.cameras, pixels, 7.0))
         ours = np.concatenate([errors(each.maps[t].depth, each, t) for t in SCORED])
-        plain = np.concatenate([errors(1 / each.first[t].inverse, each, t) for t in SCORED])
+        plain = np.concatenate([errors(1 / each.plain[t].inverse, each, t) for t in SCORED])
         bench.record(f"depth 480 x 270, cameras off by {pixels} px: within 1 %", within(ours), asked=asked,
                      better="higher", unit="%", baseline=within(plain), baseline_name="the same views, no prior",
                      note=f"mean {100 * ours.mean():.2f} %; rms distance, independent from frame to frame")  # fmt: skip
@@ -170,7 +181,7 @@ def test_depth_with_slightly_wrong_cameras(bench: Recorder) -> None:
     each = run(world, path)
     scale = np.linalg.norm(np.ptp(world.cameras.centres, axis=0)) / np.linalg.norm(np.ptp(path.centres, axis=0))
     ours = np.concatenate([errors(scale * each.maps[t].depth, each, t) for t in SCORED])
-    plain = np.concatenate([errors(scale / each.first[t].inverse, each, t) for t in SCORED])
+    plain = np.concatenate([errors(scale / each.plain[t].inverse, each, t) for t in SCORED])
     focal = path.K[0, 0, 0] / world.cameras.K[0, 0, 0] - 1
     bench.record("depth 480 x 270, our own cameras: within 1 %", within(ours), asked=80, better="higher", unit="%",
                  baseline=within(plain), baseline_name="the same views, no prior",
@@ -181,7 +192,7 @@ def test_depth_with_slightly_wrong_cameras(bench: Recorder) -> None:
 def test_depth_at_960(bench: Recorder) -> None:
     """960 x 540, five key frames as the prototype had, frame 20."""
     each = run(filmed_room(SEEDS[1], (960, 540), textures=HARD), keys=[4, 12, 20, 28, 36])
-    ours, plain = errors(each.maps[20].depth, each, 20), errors(1 / each.first[20].inverse, each, 20)
+    ours, plain = errors(each.maps[20].depth, each, 20), errors(1 / each.plain[20].inverse, each, 20)
     name = "the same views, no prior"
     bench.record("depth 960 x 540, exact cameras: mean error", 100 * ours.mean(), asked=0.28, unit="%",
                  baseline=100 * plain.mean(), baseline_name=name, note="one frame, five key frames")  # fmt: skip
@@ -318,7 +329,7 @@ def test_real_clips(bench: Recorder, shared_data: Path, name: str) -> None:
     wide: list[np.ndarray] = []
     beside: list[np.ndarray] = []
     angles = meeting_angles(path)
-    for label, sketches in (("first", first), ("second", second)):
+    for label, sketches in (("first", without_prior(solver, keys)), ("second", second)):
         for t in keys:
             rows = (path.observations[:, 0].astype(int) == t) & ~told
             names = path.observed[rows]

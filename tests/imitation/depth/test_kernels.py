@@ -9,6 +9,7 @@ import pytest
 from imitation.depth.agreement import agreeing
 from imitation.depth.projection import FRONT, Wanted, consensus, projected_inverse
 from imitation.depth.semiglobal import FINE, LARGE, LEAST, SMALL, SOFTENING, semiglobal
+from imitation.depth.spans import AROUND, TILE, likely_planes
 from imitation.depth.sweep import (
     FLOOR,
     GRADIENT,
@@ -16,6 +17,7 @@ from imitation.depth.sweep import (
     INTENSITY,
     INTENSITY_CUT,
     SHARE,
+    UNLIKELY,
     _network,
     geometry,
     sweep,
@@ -95,6 +97,38 @@ def test_the_cost_of_a_plane(guided: bool, count: int) -> None:
     off = np.abs(volume - expected)[seen]
     # A place a hair from a pixel's border may round to the other side; the prior's curve is an approximation.
     assert np.quantile(off, 0.97) < (6 if guided else 2)
+
+
+@pytest.mark.parametrize("guided", [False, True])
+def test_planes_that_are_not_tried_change_nothing_else(guided: bool) -> None:
+    """Costs of the planes that a tile tries are those of a sweep over all of them, beside other tiles' too."""
+    made = signals(7, 5)
+    path = lateral_camera(5, size=SIZE, way=0.8)
+    maps = geometry((path.K[0], path.R[0], path.T[0]), [(p.K, p.R, p.T) for p in (path[t] for t in range(1, 5))])
+    hidden = made[0, ..., 3].astype(np.uint8)
+    random = np.random.default_rng(8)
+    prior = random.uniform(0.08, 0.3, (4, SIZE[1], SIZE[0])).astype(np.float32) if guided else None
+    first = random.integers(0, 20, (-(-SIZE[1] // TILE), -(-SIZE[0] // TILE)))
+    spans = np.stack([first, np.minimum(first + random.integers(1, 9, first.shape), len(PLANES))], -1).astype(np.int16)
+    every = sweep(made[0], hidden, made[1:], maps, PLANES, prior)
+    some = sweep(made[0], hidden, made[1:], maps, PLANES, prior, spans=spans)
+    wide = np.repeat(np.repeat(spans, TILE, axis=0), TILE, axis=1)[: SIZE[1], : SIZE[0]]
+    tried = (np.arange(len(PLANES)) >= wide[..., :1]) & (np.arange(len(PLANES)) < wide[..., 1:])
+    tried |= (hidden > 0)[..., None]
+    np.testing.assert_array_equal(some[tried], every[tried])
+    assert (some[~tried] == UNLIKELY).all()
+
+
+def test_likely_planes_are_round_what_is_known() -> None:
+    """What any layer says at or beside a tile is tried there, with planes round it; all of them where none speaks."""
+    layers = np.zeros((2, 3 * TILE, 3 * TILE), np.float32)
+    step = PLANES[1] - PLANES[0]
+    layers[0, 5, 5], layers[1, 9, 3] = PLANES[10] + 0.3 * step, PLANES[12] - 0.3 * step
+    layers[1, TILE - 2, 2 * TILE + 4] = PLANES[-1] + 9 * step
+    spans = likely_planes(layers, PLANES)
+    assert tuple(spans[0, 0]) == (10 - AROUND, 12 + AROUND + 1)
+    assert tuple(spans[1, 1]) == tuple(spans[2, 0]) == (0, len(PLANES))
+    assert tuple(spans[0, 2]) == tuple(spans[1, 2]) == (len(PLANES) - AROUND, len(PLANES)), "beyond the search, beside"
 
 
 def test_the_network_sorts() -> None:
