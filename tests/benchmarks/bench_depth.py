@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import time
-from pathlib import Path
 from typing import Any
 
 import attrs
@@ -16,7 +15,6 @@ from imitation import CameraPath
 from imitation.cameras import solve_cameras
 from imitation.depth import Background, DepthMap, DepthSolver, background_mesh, joined_mesh
 from imitation.depth.solve import COARSE
-from tests.benchmarks.held_out import meeting_angles, neighbours, own_errors
 from tests.benchmarks.record import Recorder
 from tests.imitation.depth.scenes import HARD, World, distance_to, filmed_room, ray_cast
 
@@ -304,71 +302,3 @@ def _ball_depth(camera: Any, size: tuple[int, int], centre: np.ndarray, radius: 
     a, b, c = (rays**2).sum(-1), rays @ offset, offset @ offset - radius**2
     root = b * b - a * c
     return np.where(root > 0, (-b - np.sqrt(np.maximum(root, 0))) / a, np.inf)
-
-
-@pytest.mark.realdata
-@pytest.mark.parametrize("name", ["davis_dog", "davis_libby", "davis_parkour"])
-def test_real_clips(bench: Recorder, shared_data: Path, name: str) -> None:
-    """Median difference from points of the camera solve that were held out; a false hole where nothing is hidden."""
-    import av
-
-    folder = shared_data / name
-    with av.open(str(folder / "clip.mp4")) as container:
-        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-    masks = [cv2.imread(str(file), cv2.IMREAD_GRAYSCALE) > 0 for file in sorted((folder / "masks").glob("*.png"))]
-    path = solve_cameras(frames, masks=masks)
-    told = path.observed % 2 == 0
-    half = attrs.evolve(path, observations=path.observations[told], observed=path.observed[told])
-    middle = len(frames) // 2
-    keys = [t for t in range(middle - 12, middle + 13, 4) if 0 <= t < len(frames)]
-    solver = DepthSolver(frames, half, masks, longest=480)
-    first = {t: solver.first(t, keys) for t in keys}
-    second = {t: solver.second(t, first) for t in keys}
-    found: dict[str, list[np.ndarray]] = {"first": [], "second": []}
-    own: list[np.ndarray] = []
-    wide: list[np.ndarray] = []
-    beside: list[np.ndarray] = []
-    angles = meeting_angles(path)
-    for label, sketches in (("first", without_prior(solver, keys)), ("second", second)):
-        for t in keys:
-            rows = (path.observations[:, 0].astype(int) == t) & ~told
-            names = path.observed[rows]
-            points, pixels = path.points[names], np.rint(path.observations[rows, 1:]).astype(int)
-            z, depth = path[t].depth(points), solver.finish(t, sketches).depth
-            inside = (pixels >= 0).all(1) & (pixels < np.array(depth.shape[::-1])).all(1) & (z > 0)
-            got = depth[pixels[inside, 1], pixels[inside, 0]]
-            off = np.abs(got - z[inside]) / z[inside]
-            known = np.isfinite(off)
-            found[label].append(off[known])
-            if label == "second":
-                own.append(own_errors(path, t, names[inside])[known])
-                wide.append(angles[names[inside]][known] >= 1.5)
-                beside.append(np.stack(neighbours(path.observations[rows, 1:][inside][known], z[inside][known],
-                                                  got[known])))  # fmt: skip
-    ours, plain = (np.concatenate(found[label]) for label in ("second", "first"))
-    spread = np.concatenate(own)
-    limit = float(np.quantile(spread, 0.25))
-    # The prototype's points came from a mapper that by default drops those whose rays meet at less than 1.5 degrees.
-    met = ours[np.concatenate(wide)]
-    near, scatter = 100 * np.median(np.concatenate(beside, axis=1), axis=1)
-    firm, loose = ours[spread <= limit], ours[spread >= np.quantile(spread, 0.75)]
-    bench.record(f"depth of {name}: median difference from held out points", 100 * float(np.median(ours)), asked=0.9,
-                 unit="%", baseline=100 * float(np.median(plain)), baseline_name="no prior",
-                 note=f"{len(ours)} points, {len(keys)} frames, within 5 %: {within(ours, 0.05):.0f} %; the quarter "
-                 f"whose tracks fix it best, to {100 * limit:.2f} % themselves: {100 * float(np.median(firm)):.2f} %, "
-                 f"the worst fixed quarter: {100 * float(np.median(loose)):.2f} %; {len(met)} points whose rays meet "
-                 f"at 1.5 degrees or more: {100 * float(np.median(met)):.2f} %; points with a neighbour within 25 px "
-                 f"on the same surface: {near:.2f} %, and from each other, over root two, {scatter:.2f} %")  # fmt: skip
-    moved = [np.roll(mask, 150, axis=1) & ~mask for mask in masks]
-    both = [a | b for a, b in zip(masks, moved, strict=True)]
-    # The hole must be unknown in its own frame only: it stands for a place that the subject hid.
-    hole = moved[keys[3]]
-    maps = [solver.finish(t, second) for t in keys]
-    maps[3] = attrs.evolve(maps[3], depth=np.where(both[keys[3]], np.nan, maps[3].depth).astype(np.float32))
-    background = Background(frames, half, maps, masks=[*masks[: keys[3]], both[keys[3]], *masks[keys[3] + 1 :]])
-    plate = background.plate(keys[3])
-    painted = cv2.inpaint(frames[keys[3]], background.pictures.hidden(keys[3]), 5, cv2.INPAINT_TELEA)
-    true = frames[keys[3]][hole]
-    bench.record(f"plate of {name}: PSNR over a false hole", psnr(plate.picture[hole], true), asked=30, better="higher",
-                 unit="dB", baseline=psnr(painted[hole], true), baseline_name="inpainting alone (Telea)",
-                 note=f"{100 * plate.filled[hole].mean():.1f} % filled")  # fmt: skip
