@@ -18,6 +18,7 @@ from app.model.edits import tracks
 from tests.benchmarks.record import Recorder, cpu_seconds
 from tests.window.conftest import private_places as private_places
 from tests.window.conftest import qapp as qapp
+from tests.window.conftest import screen_of_its_own as screen_of_its_own
 from tests.window.conftest import session as session
 from tests.window.conftest import settle, wait_for
 from tests.window.conftest import small_project as small_project

@@ -25,6 +25,7 @@ from tests.window.conftest import at, settle, wait_for
 from tests.window.conftest import open_shell as open_shell
 from tests.window.conftest import private_places as private_places
 from tests.window.conftest import qapp as qapp
+from tests.window.conftest import screen_of_its_own as screen_of_its_own
 from tests.window.performing_hands import PerformingHands
 from tests.window.small_performance import build_small_performance
 

@@ -22,6 +22,7 @@ from tests.benchmarks.bench_window import load
 from tests.benchmarks.record import Recorder, cpu_seconds
 from tests.window.conftest import private_places as private_places
 from tests.window.conftest import qapp as qapp
+from tests.window.conftest import screen_of_its_own as screen_of_its_own
 from tests.window.conftest import settle, wait_for
 
 pytestmark = pytest.mark.bench

@@ -26,6 +26,7 @@ from tests.window.conftest import at, settle, wait_for
 from tests.window.conftest import open_shell as open_shell
 from tests.window.conftest import private_places as private_places
 from tests.window.conftest import qapp as qapp
+from tests.window.conftest import screen_of_its_own as screen_of_its_own
 from tests.window.large_project import build_large_project
 
 pytestmark = pytest.mark.bench
