@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from imitation.depth.boxes import box_round
+
 SEAM = 1.5  # pixels over which the fill blends into the frame, at a width of 960
 AROUND = 5  # pixels: from so far away a place is painted in
 
@@ -53,12 +55,9 @@ def painted(picture: NDArray[np.uint8], invented: NDArray[np.bool_]) -> NDArray[
     """A picture (h, w, 3) painted in from around where nothing is known of it (Telea 2004)."""
     import cv2
 
-    rows, columns = np.flatnonzero(invented.any(axis=1)), np.flatnonzero(invented.any(axis=0))
-    if not len(rows):
+    box = box_round(invented, 4 * AROUND)  # nothing farther away has a say
+    if box is None:
         return picture
-    # Nothing farther away has a say.
-    margin = 4 * AROUND
-    box = tuple(slice(max(0, int(side[0]) - margin), int(side[-1]) + margin + 1) for side in (rows, columns))
     made = picture.copy()
     made[box] = cv2.inpaint(
         np.ascontiguousarray(picture[box]), invented[box].astype(np.uint8), AROUND, cv2.INPAINT_TELEA
@@ -70,11 +69,10 @@ def seamless(picture: NDArray[np.uint8], filled: NDArray[np.uint8], hole: NDArra
     """Blend a fill into the frame along the hole's rim, inside the hole."""
     import cv2
 
-    rows, columns = np.flatnonzero(hole.any(axis=1)), np.flatnonzero(hole.any(axis=0))
-    if not len(rows):
-        return picture
     # Nothing happens elsewhere; the known pixels right beside the hole are what distances are taken to.
-    box = tuple(slice(max(0, int(side[0]) - 1), int(side[-1]) + 2) for side in (rows, columns))
+    box = box_round(hole, 1)
+    if box is None:
+        return picture
     inside = cv2.distanceTransform(hole[box].astype(np.uint8), cv2.DIST_L2, 3)
     width = SEAM * max(hole.shape) / 960
     alpha = np.clip(inside / width, 0, 1)[..., None]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from imitation.depth.boxes import box_round
 from imitation.depth.completion import Plate
 from imitation.errors import InputError
 
@@ -25,11 +26,9 @@ def shown_background(picture: NDArray[np.uint8], plate: Plate) -> NDArray[np.boo
     if picture.shape != plate.picture.shape:
         raise InputError(f"The frame is {picture.shape[:2]}, but its plate is {plate.picture.shape[:2]}.")
     shown: NDArray[np.bool_] = ~(plate.filled | plate.invented)
-    rows, columns = np.flatnonzero(plate.filled.any(axis=1)), np.flatnonzero(plate.filled.any(axis=0))
-    if not len(rows):
+    box = box_round(plate.filled, MARGIN)  # colours have a say in what was filled only
+    if box is None:
         return shown
-    # Colours have a say in what was filled only.
-    box = tuple(slice(max(0, int(side[0]) - MARGIN), int(side[-1]) + MARGIN + 1) for side in (rows, columns))
     ours, theirs = (cv2.GaussianBlur(each[box], (0, 0), SMOOTH).astype(np.float32) for each in (picture, plate.picture))
     apart = np.abs(ours - theirs)
     alike = np.maximum(np.maximum(apart[..., 0], apart[..., 1]), apart[..., 2]) < ALIKE

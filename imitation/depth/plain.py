@@ -16,6 +16,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from imitation.depth.boxes import box_round
+
 EVEN = 6  # levels, the worst channel, that three neighbouring pixels of a plain surface differ by at most
 ALIKE = 8.0  # levels by which its rim may differ from the pixel beside it
 STEP = 3  # the same of five, within one part of a surface that is no plane as a whole
@@ -62,10 +64,9 @@ def parts_of(names: NDArray[np.int32], picture: NDArray[np.uint8]) -> tuple[NDAr
     import cv2
 
     parts = np.zeros_like(names)
-    rows, columns = np.flatnonzero(names.any(axis=1)), np.flatnonzero(names.any(axis=0))
-    if not len(rows):
+    box = box_round(names)
+    if box is None:
         return parts, 0
-    box = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     shown = names[box] > 0
     calm = np.where(shown[..., None], picture[box], np.uint8(128))
     for _ in range(3):

@@ -11,6 +11,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from imitation.depth.depthmap import DepthMap
+from imitation.depth.sweep import geometry
 from imitation.geometry.projection import Camera
 
 FRONT = 0.03  # relative depth within which splats belong to one surface
@@ -90,7 +91,8 @@ def projected_inverse(
     top, left, bottom, right = (0, 0, size[1], size[0]) if wanted is None else wanted.box
     if bottom <= top:
         return made
-    A, b = _between(source, camera)
+    maps = geometry((source.K, source.R, source.T), [(camera.K, camera.R, camera.T)])
+    A, b = maps.A[0], maps.b[0]
     # A border of a pixel takes what falls beside the picture.
     shape = bottom - top + 2, right - left + 2
     front, total, weight = np.zeros(shape, np.float32), np.zeros(shape, np.float32), np.zeros(shape, np.float32)
@@ -105,13 +107,6 @@ def projected_inverse(
     there = weight > 0 if wanted is None else wanted.pixels[part] & (weight > 0)
     np.divide(total, weight, out=made[part], where=there)
     return made
-
-
-def _between(source: Camera, camera: Camera) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Where a camera sees another's pixels: ``(u, v) ~ A (x, y, 1) + w b`` for inverse depth w; see ``Geometry``."""
-    turn = camera.R @ source.R.T
-    A, b = camera.K @ turn @ np.linalg.inv(source.K), camera.K @ (camera.T - turn @ source.T)
-    return np.ascontiguousarray(A, np.float32), np.ascontiguousarray(b, np.float32)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -9,6 +9,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from imitation.depth.boxes import box_round
+
 MARGIN = 2.5  # pixels at a width of 960 beside a mask that hold some of the subject
 EDGE = 0.8  # the same where the colour says that it is not the subject
 ALIKE = 40.0  # grey levels, the worst channel, that a thin thing's edge differs from its middle
@@ -30,16 +32,10 @@ def between_parts(
     radius : width of the rim, pixels.
     """
     spared = np.zeros(mask.shape, bool)
-    rows, columns = np.flatnonzero(hidden.any(axis=1)), np.flatnonzero(hidden.any(axis=0))
-    if not len(rows) or not mask.any():
-        return spared
     reach, scale = round(radius) + 2, max(mask.shape) / 960
-    # Nothing farther away than the colours' mean reaches has a say.
-    margin = 4 * reach
-    box = (
-        slice(max(0, int(rows[0]) - margin), int(rows[-1]) + margin + 1),
-        slice(max(0, int(columns[0]) - margin), int(columns[-1]) + margin + 1),
-    )
+    box = box_round(hidden, 4 * reach)  # nothing farther away than the colours' mean reaches has a say
+    if box is None or not mask.any():
+        return spared
     spared[box] = _between(picture[box], mask[box], hidden[box], reach, scale)
     return spared
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from imitation.errors import InputError
 from imitation.progress import Progress, silent
 from tvmedit.cuts.limbs import FREE_ENDS
-from tvmedit.cuts.registration import Registration, evenly, register
-from tvmedit.cuts.surface import Surface
+from tvmedit.cuts.registration import SAMPLES, Registration, register
+from tvmedit.cuts.surface import Surface, evenly
 from tvmedit.features.frames import check_faces, check_vertices, upright
 from tvmedit.graph.motion_graph import MotionGraph
 from tvmedit.graph.performance import Cut, Performance
@@ -373,7 +373,7 @@ def _steps(pairs: _Pairs, shapes: dict[int, Shape], cut: Cut, first: int, last: 
 
     def step(one: Surface, other: Surface) -> float:
         # The mean of evenly spread vertices: all of them would tell the same, and take longer than the registration.
-        return float(np.mean(other.tree.query(one.vertices[evenly(len(one.vertices))])[0]))
+        return float(np.mean(other.tree.query(one.vertices[evenly(len(one.vertices), SAMPLES)])[0]))
 
     neighbours = [(at(k), at(k + 1)) for k in range(min(first, -1), max(last, 0))]
     return max(0.5 * (step(one, other) + step(other, one)) for one, other in neighbours)

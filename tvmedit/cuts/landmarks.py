@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tvmedit.compiled import compiled
 from tvmedit.cuts.limbs import FEWEST_ENDS, FREE_ENDS, STATIONS, Ends
-from tvmedit.cuts.surface import Mesh, Surface
+from tvmedit.cuts.surface import Mesh, Surface, evenly
 
 Array = NDArray[np.float64]
 Counterparts = tuple[NDArray[np.int64], Array]
@@ -54,7 +54,7 @@ def counterparts(source: Mesh, target: Mesh) -> Counterparts | None:
     source, target = Surface.of(source), Surface.of(target)
     if len(source.vertices) == len(target.vertices) and np.array_equal(source.faces, target.faces):
         # One mesh that moves: every vertex is its own counterpart.
-        same = _picked(len(source.vertices))
+        same = evenly(len(source.vertices), SAMPLES)
         return same, target.vertices[same]
     matched = _matched(source, target)
     return None if matched is None else _counterparts(source.vertices, target.vertices, *matched)
@@ -93,7 +93,7 @@ def _counterparts(
     """See ``counterparts``, with the ends matched."""
     mine, other = pairs
     scale = 0.5 * (ours.reach + theirs.reach)
-    here, there = _picked(len(source)), _picked(len(target))
+    here, there = evenly(len(source), SAMPLES), evenly(len(target), SAMPLES)
     shift = np.full((len(here), 3), np.nan)
     a = np.ascontiguousarray(np.log(ours.distances[mine][:, here].T / scale + NEAR))
     b = np.ascontiguousarray(np.log(theirs.distances[other][:, there].T / scale + NEAR))
@@ -176,10 +176,6 @@ def _rigidly_apart(first: Array, second: Array) -> Array:
 
 def _symmetric(distances: Array) -> Array:
     return 0.5 * (distances + distances.T)
-
-
-def _picked(count: int) -> NDArray[np.int64]:
-    return np.unique(np.linspace(0, count - 1, min(SAMPLES, count)).astype(np.int64))
 
 
 @compiled

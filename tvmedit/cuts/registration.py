@@ -11,7 +11,7 @@ from tvmedit.cuts.interpolation import partly
 from tvmedit.cuts.landmarks import Counterparts, counterparts, end_places
 from tvmedit.cuts.nodes import DeformationGraph
 from tvmedit.cuts.rotations import rotation_matrices
-from tvmedit.cuts.surface import Mesh, Surface, mesh_volume
+from tvmedit.cuts.surface import Mesh, Surface, evenly, mesh_volume
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int32]
@@ -253,10 +253,10 @@ class _Fit:
 
     def __init__(self, source: Surface, target: Surface, graph: DeformationGraph, metre: float) -> None:
         self.graph, self.metre, self.vertices = graph, metre, source.vertices
-        pick = evenly(len(source.vertices))
+        pick = evenly(len(source.vertices), SAMPLES)
         self.points, self.normals = source.vertices[pick], source.normals[pick]
         self.bound, self.weights = graph.bound[pick], graph.weights[pick]
-        pick = evenly(len(target.vertices))
+        pick = evenly(len(target.vertices), SAMPLES)
         self.goals, self.goal_normals = target.vertices[pick], target.normals[pick]
         self.target, self.target_normals = target.vertices, target.normals
         self.tree = target.tree
@@ -317,11 +317,6 @@ class _Fit:
         change = solveh_banded(matrix, right, lower=True, overwrite_ab=True, check_finite=False).reshape(-1, 6)
         turned = rotation_matrices(change[:, :3]) @ rotations
         return turned, moves + change[:, 3:]
-
-
-def evenly(count: int, most: int = SAMPLES) -> NDArray[np.int64]:
-    """Evenly spread numbers below a count, so many at most."""
-    return np.unique(np.linspace(0, count - 1, min(most, count)).astype(np.int64))
 
 
 def _trust(far: Array, facing: Array, other: Array, gate: float) -> Array:

@@ -93,3 +93,8 @@ def mesh_volume(vertices: Array, faces: Faces) -> float:
     """Volume enclosed, for closed meshes with outward normals."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)
+
+
+def evenly(count: int, most: int) -> NDArray[np.int64]:
+    """Evenly spread numbers below a count, so many at most."""
+    return np.unique(np.linspace(0, count - 1, min(most, count)).astype(np.int64))
