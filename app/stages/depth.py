@@ -25,7 +25,7 @@ WIDTH = 480
 """Pixels on the longest side at which a project's depth is solved: contacts and occlusion need no more."""
 BEHIND = 720
 """Pixels on the longest side at which depth behind the subject is chosen."""
-KEY_SECONDS = 3.0
+KEY_SECONDS = 2.0
 MOST = 26
 LABEL = "Measuring the background"
 

@@ -122,8 +122,9 @@ class DepthSolver:
             sketch.measured, camera, [s.measured for s in others], [pictures.camera(s.frame) for s in others],
             1.5 * sketch.step,
         )  # fmt: skip
-        inverse, count = self._filled(sketch, count, others)
-        inverse = self._edged(self._averaged(inverse, sketch, others), frame, list(sketches))
+        layers = self._layers(frame, others, max(FILLING, AVERAGED))
+        inverse, count = self._filled(sketch, count, layers[:FILLING])
+        inverse = self._edged(self._averaged(inverse, sketch, layers[:AVERAGED]), frame, list(sketches))
         inverse = resized(inverse, pictures.full, 3 * sketch.step)
         confidence = cv2.resize(count, pictures.full, interpolation=cv2.INTER_NEAREST_EXACT)
         depth = (1 / inverse).astype(np.float32)
@@ -145,33 +146,37 @@ class DepthSolver:
         )  # fmt: skip
 
     def _layers(self, frame: int, others: Sequence[Sketch], most: int) -> NDArray[np.float32]:
-        """What the maps nearest in time bring to a frame: inverse depths (k, h, w), 0 where none."""
+        """What the maps nearest in time bring to a frame, nearest first: inverse depths (k, h, w), 0 where none."""
         pictures = self.pictures
         near = sorted(others, key=lambda each: (abs(each.frame - frame), each.frame))[:most]
-        return np.stack([
-            projected_inverse(each.measured, pictures.camera(each.frame), pictures.camera(frame), pictures.size)
-            for each in near
-        ])  # fmt: skip
+        layers = np.empty((len(near), *pictures.size[::-1]), np.float32)
+        for layer, each in zip(layers, near, strict=True):
+            layer[:] = projected_inverse(
+                each.measured, pictures.camera(each.frame), pictures.camera(frame), pictures.size
+            )
+        return layers
 
-    def _averaged(self, inverse: NDArray[np.float32], sketch: Sketch, others: Sequence[Sketch]) -> NDArray[np.float32]:
+    def _averaged(
+        self, inverse: NDArray[np.float32], sketch: Sketch, layers: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
         """The mean of a map and of what agrees with it in the maps nearest in time.
 
         What disagrees does not vote: brought from another frame, near surfaces reach over their edges.
         """
         total, number = inverse.copy(), np.ones_like(inverse)
-        for layer in self._layers(sketch.frame, others, AVERAGED) if others else ():
+        for layer in layers:
             same = (layer > 0) & (np.abs(layer - inverse) <= 1.5 * sketch.step)
             total[same] += layer[same]
             number[same] += 1
         return total / number
 
     def _filled(
-        self, sketch: Sketch, count: NDArray[np.uint8], others: Sequence[Sketch]
+        self, sketch: Sketch, count: NDArray[np.uint8], layers: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """What no view shows, such as the edge of the first picture, from the other maps, where these know it."""
-        if sketch.seen.all() or not others:
+        if sketch.seen.all() or not len(layers):
             return sketch.inverse, count
-        brought, support = consensus(self._layers(sketch.frame, others, FILLING), 1.5 * sketch.step)
+        brought, support = consensus(layers, 1.5 * sketch.step)
         lent = ~sketch.seen & (brought > 0)
         return np.where(lent, brought, sketch.inverse), np.where(lent, support, count).astype(np.uint8)
 

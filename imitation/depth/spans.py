@@ -41,6 +41,6 @@ def likely_planes(layers: NDArray[np.float32], planes: NDArray[np.float32]) -> N
     first = np.floor((low[some] - planes[0]) / step) - AROUND
     last = np.ceil((high[some] - planes[0]) / step) + AROUND + 1
     # What lies beyond the search is looked for at its end.
-    spans[some, 0] = np.clip(first, 0, len(planes) - AROUND)
-    spans[some, 1] = np.clip(last, AROUND, len(planes))
+    spans[some, 0] = np.clip(first, 0, max(0, len(planes) - AROUND))
+    spans[some, 1] = np.clip(last, min(AROUND, len(planes)), len(planes))
     return spans

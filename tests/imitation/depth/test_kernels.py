@@ -129,6 +129,9 @@ def test_likely_planes_are_round_what_is_known() -> None:
     assert tuple(spans[0, 0]) == (10 - AROUND, 12 + AROUND + 1)
     assert tuple(spans[1, 1]) == tuple(spans[2, 0]) == (0, len(PLANES))
     assert tuple(spans[0, 2]) == tuple(spans[1, 2]) == (len(PLANES) - AROUND, len(PLANES)), "beyond the search, beside"
+    for few in (2, AROUND - 2):
+        spans = likely_planes(layers, PLANES[:few])
+        assert (spans == (0, few)).all(), "fewer planes than are tried round a depth"
 
 
 def test_the_network_sorts() -> None:
