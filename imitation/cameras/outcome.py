@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from imitation.cameras.adjust import Bundle, adjust
+from imitation.cameras.again import found_again
 from imitation.cameras.clip import Clip
 from imitation.cameras.features import Features, Matches, find_features, match
 from imitation.cameras.follow import Tracks
@@ -100,12 +101,15 @@ def moving(
     """Every frame's pose from mapped key frames; "planar" where the points lie on one plane."""
     centre = clip.working_centre
     poses, guessed = pose_all(
-        model, tracks, centre, rescue=_rescue(clip, features, model), progress=part(progress, 0.0, 0.3)
+        model, tracks, centre, rescue=_rescue(clip, features, model), progress=part(progress, 0.0, 0.15)
     )
-    bundle = patiently(partial(_bundle, model, poses, tracks, centre), partial(progress, 0.3))
-    bundle = refined(bundle, focal is None, part(progress, 0.3, 0.9))
+    bundle = patiently(partial(_bundle, model, poses, tracks, centre), partial(progress, 0.15))
+    bundle = refined(bundle, focal is None, part(progress, 0.15, 0.4))
     bundle = right_way_round(bundle, lambda other: refined(other, focal is None), free_focal=focal is None)
-    progress(1.0)
+    # The second round begins where better cameras say, and finds what the first one's looked for beside its place.
+    for settle, share in ((True, 0.4), (False, 0.7)):
+        bundle = found_again(clip, bundle, settle=settle, progress=part(progress, share, share + 0.2))
+        bundle = refined(bundle, focal is None, part(progress, share + 0.2, share + 0.3))
     angles = bundle.angles()
     if len(guessed) > 0.5 * len(clip) or len(bundle.points) < FEWEST:
         return failed(clip, focal, f"Only {len(clip) - len(guessed)} of {len(clip)} frames could be posed: {MORE}.")

@@ -83,7 +83,7 @@ def solve_cameras(
             known = focal_known(wide, clip.working_centre, evidence.focal, GUESS * longest) if given is None else "well"
             return turning(clip, tracks, features, matches, evidence.focal, given, known, part(progress, 0.6, 1.0))
     model = map_key_frames(
-        features, matches, tracks, clip.working_size, focal=given, progress=part(progress, 0.6, 0.85)
+        features, matches, tracks, clip.working_size, focal=given, progress=part(progress, 0.6, 0.75)
     )
     if model is None or len(model.poses) < max(3, 0.3 * len(keys)):
         return failed(
@@ -91,7 +91,7 @@ def solve_cameras(
             given,
             "No camera path explains how the background moves: mask everything that moves, or film with more parallax.",
         )
-    return moving(clip, tracks, features, model, given, part(progress, 0.85, 1.0))
+    return moving(clip, tracks, features, model, given, part(progress, 0.75, 1.0))
 
 
 def _bare(clip: Clip, tracks: Tracks) -> str:
