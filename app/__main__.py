@@ -1,6 +1,6 @@
 """``python -m app`` is the command line."""
 
-from app.commands.main import main
+from app.enter import main
 
 if __name__ == "__main__":
     main()

@@ -93,6 +93,26 @@ def test_missing_media_are_named_and_found(tmp_path: Path, capsys: pytest.Captur
     assert missing() == {"the mesh of hound": str(mesh)}
 
 
+@pytest.mark.parametrize("entry", ["main", "gui_main"])
+def test_an_interrupt_while_the_program_is_loaded_ends_it_quietly(entry: str) -> None:
+    """Ctrl+C before there is a command line to take it: one sentence, the usual exit code."""
+    begin = f"""
+import sys
+
+class Interrupting:
+    def find_spec(self, name, path, target=None):
+        if name == "click":
+            raise KeyboardInterrupt
+
+from app.enter import {entry}
+sys.meta_path.insert(0, Interrupting())
+{entry}()
+"""
+    ended = subprocess.run([sys.executable, "-c", begin], capture_output=True, text=True, check=False)
+    assert ended.returncode == STOPPED
+    assert ended.stderr.strip() == "Stopped before anything was begun."
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no such signals")
 @pytest.mark.parametrize(
@@ -109,7 +129,7 @@ def test_a_demonstration_that_is_stopped_goes_on(sent: signal.Signals, begun: st
 
     In the background of a script a program begins with Ctrl+C ignored, but is to end when it is asked to.
     """
-    begin = f"import signal; signal.signal(signal.SIGINT, signal.{begun}); from app.commands.main import main; main()"
+    begin = f"import signal; signal.signal(signal.SIGINT, signal.{begun}); from app.enter import main; main()"
     program = [sys.executable, "-c", begin]
     with subprocess.Popen([*program, "demo", str(tmp_path)], stderr=subprocess.PIPE, text=True) as running:
         try:
