@@ -27,7 +27,7 @@ def cameras(document: Document) -> Stage:
         return Stage("cameras", "Solving the cameras", _cameras, blocked=tracking.NO_CLIP)
     needs = (tracking.masks(document),) if choice.source == "solve" else ()
     seconds = 0.4 * clip.frame_count if choice.source == "solve" else 0.1
-    return Stage("cameras", "Solving the cameras", _cameras, (clip, choice), needs, 2, weight=seconds)
+    return Stage("cameras", "Solving the cameras", _cameras, (clip, choice), needs, 3, weight=seconds)
 
 
 @once
