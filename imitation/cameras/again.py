@@ -3,8 +3,8 @@
 A followed corner is lost after some frames and begun anew, as another point: its rays meet at small angles, and depth
 and focal length are weakly fixed. Once all cameras are known, it is also known where the point shows in other frames
 and how its patch looks there: the patch of one frame, seen as a small plane that faces that camera, is warped and
-fitted (inverse compositional Lucas-Kanade with free gain; Baker & Matthews 2004). All places of a point then come from
-one patch and cannot drift.
+fitted (inverse compositional Lucas-Kanade with free gain; Baker & Matthews 2004). All places of a point that are
+found at once come from one patch and cannot drift.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ MOST = 20  # frames a point keeps, evenly spread; more cost an adjustment much a
 
 
 @attrs.frozen(eq=False)
-class Patches:
+class _Patches:
     """What each point looks like in the middle one of the frames that saw it.
 
     Attributes
@@ -50,7 +50,7 @@ def _smooth(clip: Clip, frame: int) -> NDArray[np.float32]:
     return smooth
 
 
-def _patches(clip: Clip, bundle: Bundle, progress: Progress) -> Patches:
+def _patches(clip: Clip, bundle: Bundle, progress: Progress) -> _Patches:
     import cv2
 
     from imitation.cameras.again_kernels import REACH
@@ -66,18 +66,18 @@ def _patches(clip: Clip, bundle: Bundle, progress: Progress) -> Patches:
         for point in np.flatnonzero(frame == t):
             x, y = pixels[point]
             grey[point] = cv2.getRectSubPix(picture, (size, size), (float(x), float(y)))
-    return Patches(frame, pixels, grey)
+    return _Patches(frame, pixels, grey)
 
 
 @attrs.frozen(eq=False)
 class _Views:
-    """Where the points and the corners of their patches' middle pixel show: ``there(t)``."""
+    """Where the points show, and how their patches lie there: ``there(t)``."""
 
     bundle: Bundle
     corners: Array  # (3, p, 3): the patch's middle and one pixel to its right and below, on its plane
 
     @classmethod
-    def of(cls, bundle: Bundle, patches: Patches) -> _Views:
+    def of(cls, bundle: Bundle, patches: _Patches) -> _Views:
         R, T = bundle.R[patches.frame], bundle.T[patches.frame]
         depth = np.einsum("nj,nj->n", R[:, 2], bundle.points) + T[:, 2]
         corners = []
@@ -109,7 +109,7 @@ def _shown(clip: Clip, bundle: Bundle, views: _Views) -> NDArray[np.bool_]:
 
     count, (width, height) = len(bundle.R), clip.working_size
     edge = RADIUS + 2
-    wanted = np.zeros((len(bundle.points), count), bool)
+    shown = np.zeros((len(bundle.points), count), bool)
     for t in range(count):
         pixels, warp, before = views.there(t)
         inside = before & (pixels >= edge).all(1) & (pixels <= np.array([width, height]) - 1 - edge).all(1)
@@ -121,8 +121,8 @@ def _shown(clip: Clip, bundle: Bundle, views: _Views) -> NDArray[np.bool_]:
             here = np.flatnonzero(inside)
             column, row = np.rint(pixels[here]).astype(int).T
             inside[here] = allowed[row, column] > 0
-        wanted[:, t] = inside
-    return wanted
+        shown[:, t] = inside
+    return shown
 
 
 def _spread(chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
